@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+#include "engine/sph/vec.hpp"
+
+namespace sluice {
+
+/// Smoothing function W(R, h), R = |x_ij| / h.
+enum class KernelKind {
+  truncated_gaussian,  ///< eq. 6: pi^(-d/2) h^-d exp(-R^2), R < 3
+  wendland_c2,         ///< 7/(4 pi h^2) (1 - R/2)^4 (2R + 1), R < 2 (d = 2)
+};
+
+/// Time integration scheme.
+enum class Integrator {
+  modified_leap_frog,  ///< eqs. 13-17, the paper's
+  kick_drift_kick,     ///< Adami et al. 2012: larger stable steps
+};
+
+/// Arithmetic of the pair sums. The particles' state is kept in double either way.
+enum class Precision { mixed, double_precision };
+
+/// What is diffused by the density diffusion term D_i.
+enum class DiffusionKind {
+  molteni_colagrossi,  ///< eq. 7: the density
+  fourtakas,           ///< the density less its hydrostatic part
+};
+
+/// D_i of eq. 7 with the neighbour's volume; `delta` is dimensionless.
+struct DensityDiffusion {
+  DiffusionKind kind = DiffusionKind::molteni_colagrossi;
+  double delta = 0.1;
+};
+
+/// Pi_ij of eq. 8; `alpha` and `epsilon` are dimensionless.
+struct ArtificialViscosity {
+  double alpha = 0.02;
+  double epsilon = 0.01;
+};
+
+/// Pi_ij of eq. 8 summed against resting walls: a friction that the paper's free slip leaves out.
+struct WallFriction {
+  double alpha = 0.02;
+  double epsilon = 0.01;
+};
+
+/// Shepard density reinitialisation, eq. 10, every `interval` steps.
+struct Reinitialisation {
+  int interval = 20;
+};
+
+/// Pressure of dummy particles, eq. 9.
+enum class WallPressure {
+  extrapolated,  ///< as printed: may be negative
+  clamped,       ///< not below zero
+};
+
+/// Everything the solver must know besides the particles: the scheme and its constants. An empty
+/// optional is a term that is left out: its sum is not computed, its fields are not allocated.
+struct Method {
+  double spacing = 0.0;            ///< initial particle distance dx, m
+  double smoothing_length = 0.0;   ///< h, m
+  double reference_density = 0.0;  ///< rho_0, kg/m^3
+  double sound_speed = 0.0;        ///< numerical speed of sound c, m/s
+  Vec gravity = Vec::Zero();       ///< body acceleration f, m/s^2; zero: no gravity
+  KernelKind kernel = KernelKind::truncated_gaussian;
+  Integrator integrator = Integrator::modified_leap_frog;
+  Precision precision = Precision::mixed;
+  double courant = 0.25;  ///< C of eq. 18
+  std::optional<DensityDiffusion> diffusion;
+  std::optional<ArtificialViscosity> viscosity;
+  std::optional<WallFriction> wall_friction;
+  std::optional<Reinitialisation> reinitialisation;
+  WallPressure wall_pressure = WallPressure::extrapolated;
+  Box domain;  ///< a particle that leaves it is retired
+  std::optional<double>
+      wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent: no tank
+
+  /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
+  [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }
+  /// Distance at which W becomes zero, in smoothing lengths.
+  [[nodiscard]] double support_ratio() const {
+    return kernel == KernelKind::truncated_gaussian ? 3.0 : 2.0;
+  }
+  [[nodiscard]] double support() const { return support_ratio() * smoothing_length; }
+};
+
+}  // namespace sluice

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/sph/method.hpp"
+#include "engine/sph/particles.hpp"
+
+namespace sluice {
+
+/// What limited the length of a step.
+enum class StepLimit { sound, force };
+[[nodiscard]] std::string_view to_string(StepLimit limit);
+
+/// The passes of a step, for the account of time.
+enum class Pass { sort, wall_pressure, pair_sums, reinitialisation, update, sample };
+inline constexpr std::size_t kPassCount = 6;
+[[nodiscard]] std::string_view to_string(Pass pass);
+
+/// How the solver uses the machine. Nothing here changes a result but `simd_target`, and that only
+/// in rounding.
+struct Execution {
+  int threads = 1;
+  std::string simd_target;  ///< "" best of this machine, else "SSE4", "AVX2" or "AVX3"
+};
+
+/// Extremes over all particles at the last step, with the particle that holds each.
+struct Extremes {
+  double max_speed = 0.0;            ///< m/s
+  double max_acceleration = 0.0;     ///< m/s^2
+  double min_density_excess = 0.0;   ///< kg/m^3
+  double max_density_excess = 0.0;   ///< kg/m^3
+  bool finite = true;                ///< no NaN and no infinity in position, velocity and density
+  std::uint32_t max_neighbours = 0;  ///< upper bound seen at the last sort
+};
+
+/// Kinetic, potential and internal energy of the fluid, J per metre of depth; potential against y =
+/// 0.
+struct Energy {
+  double kinetic = 0.0;
+  double potential = 0.0;
+  double internal = 0.0;
+  [[nodiscard]] double total() const { return kinetic + potential + internal; }
+};
+
+/// A value estimated from the fluid around a point, with the kernel sum that carried it.
+struct Probe {
+  double value = 0.0;
+  double weight =
+      0.0;  ///< sum of W V over the fluid, dimensionless: about 1 inside, 0: dry and no value
+};
+
+/// The WCSPH solver: particles, walls and the passes of a step, chosen once for the terms of
+/// `Method`. Results depend on `Method`, the initial state and the SIMD target only; any number of
+/// threads gives the same bits.
+class Solver {
+ public:
+  /// Starts from particles at rest in time (`state.step == 0`, only x, y, vx, vy, density_excess
+  /// and id filled) or goes on from a state taken by `state()`. `walls` are the positions of the
+  /// dummy particles, m.
+  Solver(const Method& method, const SolverState& state, const std::vector<Vec>& walls,
+         const Execution& execution);
+  ~Solver();
+  Solver(Solver&&) noexcept;
+  Solver& operator=(Solver&&) noexcept;
+
+  /// One time step.
+  void step();
+
+  [[nodiscard]] std::uint64_t step_count() const;
+  [[nodiscard]] double time() const;           ///< s
+  [[nodiscard]] double time_step() const;      ///< length of the last step, s
+  [[nodiscard]] StepLimit step_limit() const;  ///< what limited it
+  [[nodiscard]] std::size_t particle_count() const;
+  [[nodiscard]] std::size_t wall_count() const;
+  [[nodiscard]] const std::vector<Retired>& retired() const;
+  [[nodiscard]] const Extremes& extremes() const;
+  [[nodiscard]] std::string_view simd_target() const;
+  [[nodiscard]] int threads() const;
+
+  /// A copy of the state, particles in their order.
+  [[nodiscard]] SolverState state() const;
+  /// Index into `state().particles` of the particle for which `extremes()` are broken first: not
+  /// finite, else fastest.
+  [[nodiscard]] double offending_particle_id() const;
+
+  /// Energy now. Sums run in particle order.
+  [[nodiscard]] Energy energy() const;
+  /// eq. 11 with smoothing length `h`, Pa.
+  [[nodiscard]] Probe pressure_at(const Vec& point, double h) const;
+  /// Highest point at `x` where the fluid fills at least half of the kernel, m; weight 0 when there
+  /// is none.
+  [[nodiscard]] Probe surface_height_at(double x) const;
+  /// Largest x of any fluid particle below `y_max`, plus half a spacing, m.
+  [[nodiscard]] Probe surge_front() const;
+  /// Distance of the nearest fluid particle to `point`, m; infinity when there is none within the
+  /// support.
+  [[nodiscard]] double distance_to_fluid(const Vec& point) const;
+  /// Wall pressures of the dummy particles, Pa, in the order of `walls`.
+  [[nodiscard]] std::vector<double> wall_pressures() const;
+
+  /// Seconds of wall time spent in each pass since construction.
+  [[nodiscard]] const std::array<double, kPassCount>& pass_seconds() const;
+  [[nodiscard]] std::uint64_t sort_count() const;
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sluice

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sluice {
+
+/// Raw samples of one sensor. `values` holds `columns.size()` numbers per sample, row by row; a dry
+/// sample is NaN with weight 0.
+struct Series {
+  struct Column {
+    std::string name;  ///< "value" where a sensor has one
+    std::string unit;  ///< SI
+  };
+  std::string name;
+  std::string kind;
+  std::vector<Column> columns;
+  std::vector<double> time;      ///< s, strictly increasing
+  std::vector<double> duration;  ///< Dt_n that the sample stands for in eq. 12: time since the
+                                 ///< sensor's last sample, s
+  std::vector<double> values;
+  std::vector<double> weight;  ///< kernel weight that carried the value, dimensionless
+  std::uint64_t next_index =
+      0;  ///< the next sample is due at the first step with time >= next_index * interval
+
+  [[nodiscard]] std::size_t size() const { return time.size(); }
+  friend bool operator==(const Series&, const Series&) = default;
+};
+
+}  // namespace sluice
