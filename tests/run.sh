@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# Everything that is checked before a change goes in, from a fresh clone, in one command.
+# Closes with one line, "N passed, N failed", and exits 0 only when nothing failed.
+#
+#   tests/run.sh                    all steps below, in this order
+#   tests/run.sh STEP...            some of: release format tidy asan tsan
+#
+#   release   build and run all tests but the long ones (ctest label "long")
+#   format    clang-format finds nothing to change
+#   tidy      clang-tidy finds nothing in engine/ and cli/
+#   asan      the same tests under the address and undefined-behaviour sanitizers
+#   tsan      the tests with "Thread" in their names under the thread sanitizer
+#
+# Builds are kept in build/release, build/asan and build/tsan, so that a second run is quick.
+# Jobs side by side: SLUICE_JOBS, else the number of cores.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+steps=("$@")
+((${#steps[@]})) || steps=(release format tidy asan tsan)
+for step in "${steps[@]}"; do
+  case "$step" in
+    release | format | tidy | asan | tsan) ;;
+    -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "run.sh: unknown step '$step'; try --help" >&2; exit 2 ;;
+  esac
+done
+
+jobs=${SLUICE_JOBS:-$(nproc)}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+passed=0
+failed=0
+skipped=0
+failures=()
+
+say() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
+pass() { passed=$((passed + 1)); }
+fail() {
+  failed=$((failed + 1))
+  failures+=("$1")
+}
+
+# build PRESET [TARGET...]: configure and build, all targets by default.
+build() {
+  local preset=$1
+  shift
+  local targets=()
+  (($#)) && targets=(--target "$@")
+  say "build $preset"
+  cmake --preset "$preset" >"$scratch/configure" || { cat "$scratch/configure"; return 1; }
+  cmake --build --preset "$preset" -j "$jobs" "${targets[@]}"
+}
+
+# check PRESET ARGUMENT...: run ctest with these arguments and add up what it counted.
+check() {
+  local preset=$1 report="$scratch/$1.xml" names tests=0 bad=0 left_out=0
+  shift
+  say "tests, $preset"
+  ctest --preset "$preset" -j "$jobs" --no-tests=error --output-junit "$report" "$@"
+  local status=$?
+  if [[ -s $report ]]; then
+    tests=$(grep -c '<testcase ' "$report")
+    bad=$(grep -c '<testcase .*status="fail"' "$report")
+    left_out=$(grep -cE '<testcase .*status="(notrun|disabled)"' "$report")
+    names=$(sed -n 's/.*<testcase name="\([^"]*\)".*status="fail".*/\1/p' "$report")
+    while read -r name; do [[ -n $name ]] && failures+=("$preset: $name"); done <<<"$names"
+  fi
+  passed=$((passed + tests - bad - left_out))
+  failed=$((failed + bad))
+  skipped=$((skipped + left_out))
+  if ((status != 0 && bad == 0)); then fail "$preset: ctest ended with status $status"; fi
+}
+
+sources() { git ls-files -z --cached --others --exclude-standard -- '*.cpp' '*.hpp'; }
+
+step_release() {
+  if build release; then check release -LE long; else fail "release: build"; fi
+}
+
+step_format() {
+  say "format"
+  if sources | xargs -0 -r clang-format --dry-run -Werror; then pass; else fail "format"; fi
+}
+
+step_tidy() {
+  build release || { fail "tidy: build"; return; }
+  say "tidy"
+  local root
+  root=$(printf '%s' "$PWD" | sed 's/[][\.*^$+?(){}|]/\\&/g')
+  if run-clang-tidy -quiet -p build/release -j "$jobs" -header-filter="^$root/(engine|cli)/" \
+    "^$root/(engine|cli)/" >"$scratch/tidy" 2>/dev/null; then
+    pass
+  else
+    grep -vE '^clang-tidy|^$' "$scratch/tidy" | tail -n 200
+    fail "tidy"
+  fi
+}
+
+step_asan() {
+  export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1}
+  export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+  if build asan; then check asan -LE 'long|bench'; else fail "asan: build"; fi
+}
+
+step_tsan() {
+  if build tsan; then check tsan -R '[Tt]hread'; else fail "tsan: build"; fi
+}
+
+deploy/install-dependencies.sh --tests || exit 1
+for step in "${steps[@]}"; do "step_$step"; done
+
+say "summary"
+((${#failures[@]})) && printf 'failed: %s\n' "${failures[@]}"
+((skipped)) && echo "$skipped skipped"
+echo "$passed passed, $failed failed"
+((failed == 0 && passed > 0))
