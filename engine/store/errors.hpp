@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace sluice {
+
+/// What kind of storage failure it is, for those who must act on it; the message is for people.
+enum class StorageFault {
+  disk_full,            ///< no room, quota or file size limit reached: make room and go on
+  io,                   ///< the system refused to read, write or rename
+  unwritable,           ///< no permission to write, or mounted read-only
+  corrupt,              ///< a file of ours that is cut short, altered or not laid out as it must be
+  unsupported_version,  ///< written by a newer program
+  wrong_scene,          ///< whole, but of another scene or another integrator
+  invalid_content,      ///< what was to be written breaks the layout's rules; nothing was written
+  not_ours,             ///< not a job folder or not one of our files
+  already_exists,       ///< the folder holds a job already
+  locked,               ///< another process runs this job
+  no_usable_checkpoint,  ///< checkpoints exist, none of them can be used
+};
+[[nodiscard]] std::string_view to_string(StorageFault fault);
+
+/// Thrown by everything in engine/store. The message says what failed, where and what to do.
+class StorageError : public std::runtime_error {
+ public:
+  StorageError(StorageFault fault, const std::string& message)
+      : std::runtime_error(message), fault_(fault) {}
+  [[nodiscard]] StorageFault fault() const { return fault_; }
+
+ private:
+  StorageFault fault_;
+};
+
+/// The error of a failed system call: `action` ("cannot write"), the path and the meaning of
+/// `error_number`, with the fault that belongs to it.
+[[nodiscard]] StorageError system_error(std::string_view action, const std::filesystem::path& path,
+                                        int error_number);
+
+/// The same fault with the path put before the message.
+[[nodiscard]] StorageError in_file(const std::filesystem::path& path, const StorageError& error);
+
+}  // namespace sluice
