@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct Polygon {
 };
 using Shape = std::variant<Rectangle, Circle, Ellipse, Polygon>;
 
-/// An open or closed box of solid walls: [0, width] x [0, height].
+/// A box of solid walls around [0, width] x [0, height], with a lid or without.
 struct Tank {
   double width = 0.0;
   double height = 0.0;
@@ -49,10 +50,14 @@ struct FluidRegion {
 
 enum class SensorKind { pressure, surface_height, surge_front, column_height, energy, arrival };
 
+/// The word for a kind in scenes and series files.
+[[nodiscard]] std::string_view to_string(SensorKind kind);
+
 struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::pressure;
-  Vec position = Vec::Zero();     ///< pressure, arrival: the point; surface_height: x only
+  Vec position = Vec::Zero();     ///< pressure, arrival: the point, m; surface_height and
+                                  ///< column_height: x only; otherwise zero
   double smoothing_length = 0.0;  ///< pressure only, m; parsed default: the scene's h
   double interval = 0.0;          ///< s; 0: every step
 };

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/scene/scene.hpp"
+
+namespace sluice {
+
+/// What a run of a scene takes, found from areas and lengths: no particle is made.
+struct Estimate {
+  std::uint64_t fluid_particles = 0;  ///< exact for rectangles without obstacles
+  std::uint64_t wall_particles = 0;   ///< exact without obstacles
+  double time_step = 0.0;             ///< s, eq. 18 at the speed sqrt(2 |f| H) of a fall through H
+  std::uint64_t steps = 0;            ///< end_time / time_step
+  std::uint64_t samples = 0;          ///< of all sensors together
+  std::uint64_t frames = 0;           ///< snapshots
+  std::uint64_t memory_bytes = 0;     ///< of the run: 250 a fluid particle, 100 a dummy particle
+  std::uint64_t disk_bytes = 0;       ///< three checkpoints, the series and the frames
+};
+
+[[nodiscard]] Estimate estimate(const Scene& scene);
+
+/// The same as a JSON object, keys as the members.
+[[nodiscard]] std::string estimate_json(const Estimate& estimate);
+
+}  // namespace sluice
