@@ -3,26 +3,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "engine/run/filter.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/store/errors.hpp"
+#include "engine/store/file_system.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/series_file.hpp"
 
 namespace sluice {
 namespace {
 
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) {
-    throw StorageError(StorageFault::io, fmt::format("{}: cannot be read", path.string()));
-  }
-  return text;
-}
+/// Far more than any text of a job needs.
+constexpr std::size_t kMaxTextBytes = 1024 * 1024;
 
 SensorSummary summarise(const Series& series, std::size_t column, double tau) {
   const std::size_t width = series.columns.size();
@@ -51,7 +44,7 @@ SensorSummary summarise(const Series& series, std::size_t column, double tau) {
 /// A broken outcome.json is no reason to refuse the figures.
 nlohmann::ordered_json read_outcome(const JobPaths& paths) {
   if (!std::filesystem::exists(paths.outcome())) return nullptr;
-  return nlohmann::ordered_json::parse(read_text(paths.outcome()), nullptr, false);
+  return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes), nullptr, false);
 }
 
 }  // namespace
@@ -77,7 +70,7 @@ Report report_of_folder(const std::filesystem::path& folder, double tau) {
         StorageFault::not_ours,
         fmt::format("{}: holds no job; name a folder that `sluice run` made", folder.string()));
   }
-  const ParseResult parsed = parse_scene(read_text(paths.scene()));
+  const ParseResult parsed = parse_scene(read_text(paths.scene(), kMaxTextBytes));
   if (!parsed.scene) throw SceneError(parsed.problems.front());
   if (!std::filesystem::exists(paths.series())) {
     throw StorageError(StorageFault::io,
