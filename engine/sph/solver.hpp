@@ -109,8 +109,9 @@ class Solver {
   [[nodiscard]] std::uint64_t sort_count() const;
   [[nodiscard]] std::size_t memory_bytes() const;
 
- private:
   class Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,0 +1,98 @@
+#include "engine/sph/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace sluice {
+namespace {
+
+constexpr double kMaxCells = 1 << 20;     // of one direction
+constexpr double kSingleTile = 1024.0;    // smoothing lengths
+constexpr double kTile = 512.0;           // smoothing lengths
+constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
+
+}  // namespace
+
+Grid::Grid(const Box& domain, double spacing, double smoothing_length, std::size_t particles) {
+  strip_ = std::max(2.0 * spacing, domain.size().y() / kMaxCells);
+  // A strip edge at y = 0 puts two whole rows of a lattice that starts there into each strip.
+  origin_ = {domain.min.x(), std::floor(domain.min.y() / strip_) * strip_};
+  strips_ = static_cast<std::size_t>((domain.max.y() - origin_.y()) / strip_) + 1;
+  const double most_bins =
+      std::max(1.0, static_cast<double>(8 * particles + 65536) / static_cast<double>(strips_));
+  bin_ = std::max(2.0 * spacing, domain.size().x() / std::min(most_bins, kMaxCells));
+  bins_ = static_cast<std::size_t>(domain.size().x() / bin_) + 1;
+  max_cluster_length_ = std::max(6.0 * spacing, 3.0 * smoothing_length);
+
+  const bool one_tile = domain.size().maxCoeff() <= kSingleTile * smoothing_length;
+  tile_size_ = (one_tile ? 4.0 * kSingleTile : kTile) * smoothing_length;
+  tile_origin_ = one_tile ? Vec((domain.min + domain.max) / 2.0 - Vec::Constant(tile_size_ / 2.0))
+                          : domain.min;
+}
+
+std::size_t Grid::cell(double distance, double size, std::size_t count) {
+  const double n = std::floor(distance / size);
+  if (!(n > 0.0)) return 0;
+  return std::min(static_cast<std::size_t>(std::min(n, kMaxCells * 4.0)), count - 1);
+}
+
+Grid::Tile Grid::tile(const Vec& position) const {
+  const Vec n = ((position - tile_origin_) / tile_size_).array().floor().max(-1e6).min(1e6);
+  return {static_cast<int>(n.x()), static_cast<int>(n.y())};
+}
+
+Vec Grid::tile_center(Tile tile) const {
+  return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
+}
+
+Layout sort_into_clusters(const Grid& grid, std::span<const double> x, std::span<const double> y,
+                          std::span<const double> id, std::span<const std::uint32_t> use) {
+  // Counting sort by cell, then insertion sort by x inside it: linear, and fast on what is nearly
+  // sorted.
+  std::vector<std::uint32_t> cell(use.size());
+  std::vector<std::uint32_t> first(grid.strips() * grid.bins() + 1, 0);
+  for (std::size_t k = 0; k < use.size(); ++k) {
+    const std::uint32_t p = use[k];
+    cell[k] = static_cast<std::uint32_t>(grid.strip(y[p]) * grid.bins() + grid.bin(x[p]));
+    ++first[cell[k] + 1];
+  }
+  for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
+
+  std::vector<std::uint32_t> order(use.size());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  const auto before = [&](std::uint32_t a, std::uint32_t b) {
+    if (x[a] != x[b]) return x[a] < x[b];
+    return std::tie(y[a], id[a]) < std::tie(y[b], id[b]);
+  };
+  for (std::size_t k = 0; k < use.size(); ++k) {
+    std::uint32_t place = next[cell[k]]++;
+    for (; place > first[cell[k]] && before(use[k], order[place - 1]); --place) {
+      order[place] = order[place - 1];
+    }
+    order[place] = use[k];
+  }
+
+  Layout layout;
+  layout.source.reserve(use.size() + use.size() / 8 + kCluster * (grid.strips() + kWholeVectors));
+  layout.strip_begin.reserve(grid.strips() + 1);
+  const auto fill_cluster = [&](std::size_t multiple) {
+    while (layout.source.size() % multiple != 0) layout.source.push_back(Layout::kEmpty);
+  };
+  for (std::size_t strip = 0; strip < grid.strips(); ++strip) {
+    layout.strip_begin.push_back(static_cast<std::uint32_t>(layout.source.size() / kCluster));
+    double cluster_start = 0.0;
+    for (std::size_t k = first[strip * grid.bins()]; k < first[(strip + 1) * grid.bins()]; ++k) {
+      const std::uint32_t p = order[k];
+      if (x[p] - cluster_start > grid.max_cluster_length()) fill_cluster(kCluster);
+      if (layout.source.size() % kCluster == 0) cluster_start = x[p];
+      layout.source.push_back(p);
+    }
+    fill_cluster(kCluster);
+  }
+  layout.strip_begin.push_back(static_cast<std::uint32_t>(layout.source.size() / kCluster));
+  fill_cluster(kCluster * kWholeVectors);
+  return layout;
+}
+
+}  // namespace sluice

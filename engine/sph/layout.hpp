@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/sph/pair_arrays.hpp"
+#include "engine/sph/vec.hpp"
+
+namespace sluice {
+
+/// The fixed geometry of the order of particles in memory: strips two spacings high, and along a
+/// strip bins two spacings wide (wider in a vast and almost empty domain). It depends on the scene
+/// alone, never on where particles went.
+class Grid {
+ public:
+  /// `particles` bounds the memory that the grid may use. Lengths in m.
+  Grid(const Box& domain, double spacing, double smoothing_length, std::size_t particles);
+
+  [[nodiscard]] std::size_t strips() const { return strips_; }
+  [[nodiscard]] std::size_t bins() const { return bins_; }
+  /// Positions outside the domain count to the nearest strip and bin.
+  [[nodiscard]] std::size_t strip(double y) const { return cell(y - origin_.y(), strip_, strips_); }
+  [[nodiscard]] std::size_t bin(double x) const { return cell(x - origin_.x(), bin_, bins_); }
+  [[nodiscard]] double strip_height() const { return strip_; }
+  /// Lower edge of a strip, m.
+  [[nodiscard]] double strip_bottom(std::size_t strip) const {
+    return origin_.y() + static_cast<double>(strip) * strip_;
+  }
+  /// A cluster spans at most this much of a strip, m.
+  [[nodiscard]] double max_cluster_length() const { return max_cluster_length_; }
+
+  /// Tiles: squares whose centres are the origins of single-precision positions. One tile where
+  /// that resolves 3e-5 h.
+  struct Tile {
+    int column = 0;
+    int row = 0;
+    friend bool operator==(const Tile&, const Tile&) = default;
+  };
+  [[nodiscard]] Tile tile(const Vec& position) const;
+  [[nodiscard]] Vec tile_center(Tile tile) const;
+  [[nodiscard]] double tile_size() const { return tile_size_; }
+
+ private:
+  static std::size_t cell(double distance, double size, std::size_t count);
+
+  Vec origin_;
+  double strip_;
+  double bin_;
+  std::size_t strips_;
+  std::size_t bins_;
+  double max_cluster_length_;
+  double tile_size_;
+  Vec tile_origin_;
+};
+
+/// Where particles go in memory: strip by strip, by x inside a strip, four to a cluster. A strip
+/// starts a new cluster and so does a gap; slots left over are empty.
+struct Layout {
+  static constexpr std::uint32_t kEmpty = std::numeric_limits<std::uint32_t>::max();
+
+  std::vector<std::uint32_t> source;       ///< per slot: index of the particle, or kEmpty
+  std::vector<std::uint32_t> strip_begin;  ///< first cluster of each strip, and the end
+
+  [[nodiscard]] std::size_t slots() const { return source.size(); }
+  [[nodiscard]] std::size_t clusters() const { return source.size() / kCluster; }
+};
+
+/// Orders the particles by (strip, x, y, id). The order of the input changes nothing. `use` holds
+/// the particles to place.
+[[nodiscard]] Layout sort_into_clusters(const Grid& grid, std::span<const double> x,
+                                        std::span<const double> y, std::span<const double> id,
+                                        std::span<const std::uint32_t> use);
+
+}  // namespace sluice

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sluice {
+
+/// Particles per cluster: pair sums run cluster against cluster.
+inline constexpr std::size_t kCluster = 4;
+/// Clusters per chunk: the unit of work of a thread.
+inline constexpr std::size_t kChunk = 64;
+
+/// A growing aligned array whose tail may be read, not used, one vector past the end.
+template <typename T>
+class AlignedArray {
+ public:
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      capacity_ = size + size / 8;
+      data_ = hwy::AllocateAligned<T>(capacity_ + kTail);
+      std::fill(data_.get(), data_.get() + capacity_ + kTail, T{});
+    }
+    size_ = size;
+  }
+  [[nodiscard]] T* data() { return data_.get(); }
+  [[nodiscard]] const T* data() const { return data_.get(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t bytes() const { return (capacity_ + kTail) * sizeof(T); }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  static constexpr std::size_t kTail = 16;
+  hwy::AlignedFreeUniquePtr<T[]> data_;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+/// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one entry per
+/// slot. Positions are relative to the origin of the cluster's tile, so that single precision
+/// resolves them in a domain of any size.
+template <typename T>
+struct PairArrays {
+  AlignedArray<T> x, y;      ///< X
+  AlignedArray<T> u, v;      ///< U
+  AlignedArray<T> excess;    ///< s
+  AlignedArray<T> volume;    ///< V
+  AlignedArray<T> diffused;  ///< psi of the density diffusion
+  AlignedArray<T> stress;    ///< A
+  AlignedArray<T> reach;     ///< displacement that the pair list allows
+
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &stress, &reach}) {
+      sum += a->bytes();
+    }
+    return sum;
+  }
+};
+
+/// For every cluster of a set, the clusters of another that may hold a neighbour, chunk by chunk.
+struct PairList {
+  struct Chunk {
+    std::vector<std::uint32_t> entries;  ///< cluster index | tile shift code << kShiftBit
+    std::vector<std::uint32_t> begin;    ///< of each cluster of the chunk, and the end
+  };
+  static constexpr std::uint32_t kShiftBit = 28;
+  static constexpr std::uint32_t kClusterMask = (1U << kShiftBit) - 1U;
+
+  std::vector<Chunk> chunks;
+
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const Chunk& c : chunks) sum += 4 * (c.entries.capacity() + c.begin.capacity());
+    return sum;
+  }
+};
+
+/// Tile shift codes 0-8: (X_j's tile - X_i's tile) + 1 in each direction, row by row; 4 is the same
+/// tile.
+inline constexpr std::uint32_t kSameTile = 4;
+
+}  // namespace sluice

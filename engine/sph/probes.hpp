@@ -1,0 +1,43 @@
+#pragma once
+
+#include "engine/sph/layout.hpp"
+#include "engine/sph/neighbours.hpp"
+#include "engine/sph/particles.hpp"
+#include "engine/sph/solver.hpp"
+
+namespace sluice {
+
+/// Kinetic energy m v^2/2, potential energy -m f . x, and internal energy m c^2 (ln(rho/rho_0) +
+/// rho_0/rho - 1), which is the integral of p/rho^2 of the linear equation of state. Summed in
+/// particle order.
+[[nodiscard]] Energy total_energy(const Method& method, const Particles& particles);
+
+/// Largest x of the fluid plus half a spacing; weight 0 without particles.
+[[nodiscard]] Probe front(const Method& method, const Particles& particles);
+
+/// Values of the fluid at a point, from the particles around it. Finds them by the order in memory.
+class FluidProbe {
+ public:
+  FluidProbe(const Method& method, const Particles& particles, const Layout& layout,
+             const ClusterBounds& bounds)
+      : method_(method), particles_(particles), layout_(layout), bounds_(bounds) {}
+
+  /// eq. 11 with smoothing length h, Pa; the weight is sum W V.
+  [[nodiscard]] Probe pressure(const Vec& point, double h) const;
+  /// Highest point at x where sum W V reaches a half, m.
+  [[nodiscard]] Probe surface_height(double x) const;
+  /// To the nearest particle, m; infinity when none is within the support.
+  [[nodiscard]] double distance(const Vec& point) const;
+
+ private:
+  /// Calls body(slot) for at least all particles in the box.
+  template <class Body>
+  void for_each_in(const Box& box, const Body& body) const;
+
+  const Method& method_;
+  const Particles& particles_;
+  const Layout& layout_;
+  const ClusterBounds& bounds_;
+};
+
+}  // namespace sluice

@@ -1,0 +1,101 @@
+#include "engine/sph/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/sph/engine.hpp"
+#include "engine/sph/equation_of_state.hpp"
+#include "engine/sph/probes.hpp"
+
+namespace sluice {
+
+std::string_view to_string(StepLimit limit) {
+  return limit == StepLimit::sound ? "sound" : "force";
+}
+
+std::string_view to_string(Pass pass) {
+  constexpr std::array<std::string_view, kPassCount> names{
+      "sort", "wall_pressure", "pair_sums", "reinitialisation", "update", "sample"};
+  return names[static_cast<std::size_t>(pass)];
+}
+
+Solver::Solver(const Method& method, const SolverState& state, const std::vector<Vec>& walls,
+               const Execution& execution)
+    : impl_(method.precision == Precision::mixed
+                ? make_engine<float>(method, state, walls, execution)
+                : make_engine<double>(method, state, walls, execution)) {}
+Solver::~Solver() = default;
+Solver::Solver(Solver&&) noexcept = default;
+Solver& Solver::operator=(Solver&&) noexcept = default;
+
+void Solver::step() { impl_->step(); }
+
+std::uint64_t Solver::step_count() const { return impl_->step_count; }
+double Solver::time() const { return impl_->time; }
+double Solver::time_step() const { return impl_->time_step; }
+StepLimit Solver::step_limit() const { return impl_->step_limit; }
+std::size_t Solver::particle_count() const { return impl_->particle_count; }
+std::size_t Solver::wall_count() const { return impl_->wall_count; }
+const std::vector<Retired>& Solver::retired() const { return impl_->retired; }
+const Extremes& Solver::extremes() const { return impl_->extremes; }
+std::string_view Solver::simd_target() const { return impl_->simd_target; }
+int Solver::threads() const { return impl_->execution.threads; }
+const std::array<double, kPassCount>& Solver::pass_seconds() const { return impl_->pass_seconds; }
+std::uint64_t Solver::sort_count() const { return impl_->sort_count; }
+std::size_t Solver::memory_bytes() const { return impl_->memory_bytes(); }
+std::vector<double> Solver::wall_pressures() const { return impl_->wall_pressures(); }
+
+SolverState Solver::state() const {
+  SolverState out;
+  out.step = impl_->step_count;
+  out.time = impl_->time;
+  out.time_step = impl_->time_step;
+  out.retired = impl_->retired;
+  for (const Field& field : kFields) {
+    if (!carries(impl_->method.integrator, field)) continue;
+    const std::vector<double>& from = impl_->particles.*field.member;
+    std::vector<double>& to = out.particles.*field.member;
+    to.reserve(impl_->particle_count);
+    for (std::size_t s = 0; s < from.size(); ++s) {
+      if (impl_->particles.id[s] >= 0.0) to.push_back(from[s]);
+    }
+  }
+  return out;
+}
+
+double Solver::offending_particle_id() const {
+  const Particles& p = impl_->particles;
+  double worst = -1.0;
+  double id = -1.0;
+  for (std::size_t s = 0; s < p.size(); ++s) {
+    if (p.id[s] < 0.0) continue;
+    const double sum = p.x[s] + p.y[s] + p.velocity(s).squaredNorm() + p.density_excess[s];
+    if (!std::isfinite(sum)) return p.id[s];
+    if (p.velocity(s).squaredNorm() > worst) {
+      worst = p.velocity(s).squaredNorm();
+      id = p.id[s];
+    }
+  }
+  return id;
+}
+
+Energy Solver::energy() const { return total_energy(impl_->method, impl_->particles); }
+
+Probe Solver::pressure_at(const Vec& point, double h) const {
+  return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds)
+      .pressure(point, h);
+}
+
+Probe Solver::surface_height_at(double x) const {
+  return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds)
+      .surface_height(x);
+}
+
+Probe Solver::surge_front() const { return front(impl_->method, impl_->particles); }
+
+double Solver::distance_to_fluid(const Vec& point) const {
+  return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds).distance(point);
+}
+
+}  // namespace sluice

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "engine/sph/method.hpp"
+#include "engine/sph/pair_arrays.hpp"
+#include "engine/sph/updates.hpp"
+
+namespace sluice {
+
+/// Read access to PairArrays; a field that the terms do not use may be null.
+template <typename T>
+struct PairView {
+  const T* x = nullptr;
+  const T* y = nullptr;
+  const T* u = nullptr;
+  const T* v = nullptr;
+  const T* excess = nullptr;
+  const T* volume = nullptr;
+  const T* diffused = nullptr;
+  const T* stress = nullptr;
+  const T* reach = nullptr;
+};
+
+/// Constants of the terms, dimensionless (terms-inl.hpp).
+template <typename T>
+struct TermConstants {
+  T two_delta{};
+  T viscosity_alpha{}, viscosity_epsilon{1};
+  T friction_alpha{}, friction_epsilon{1};
+  T gravity_x{}, gravity_y{};
+  T tile_size{};  ///< in h
+};
+
+/// One chunk of clusters i against the clusters j of its lists.
+template <typename T>
+struct SweepTask {
+  PairView<T> self;   ///< the set of i
+  PairView<T> fluid;  ///< j of `to_fluid`
+  PairView<T> wall;   ///< j of `to_wall`
+  const PairList::Chunk* to_fluid = nullptr;
+  const PairList::Chunk* to_wall = nullptr;  ///< null without walls
+  std::size_t first_cluster = 0;
+  std::size_t clusters = 0;
+  const TermConstants<T>* constants = nullptr;
+  T* density_sum = nullptr;  ///< per slot: out of the pair sums, before their common scale
+  T* x_sum = nullptr;
+  T* y_sum = nullptr;
+};
+
+/// A chunk of clusters i whose list of possible neighbours among the clusters j is wanted.
+template <typename T>
+struct PruneTask {
+  PairView<T> self, other;
+  T cut_off{};  ///< support in h
+  T tile_size{};
+  std::size_t cluster = 0;
+  const std::uint32_t* candidates = nullptr;  ///< entries to test, in order
+  std::size_t count = 0;
+  std::uint32_t* out = nullptr;  ///< room for `count` entries
+};
+
+/// The loops over pairs for the terms of one method on one SIMD target, chosen once per run.
+template <typename T>
+struct Sweeps {
+  using Sweep = void (*)(const SweepTask<T>&);
+
+  Sweep density_and_acceleration = nullptr;  ///< eqs. 4, 5, 7, 8 in one sweep
+  Sweep density = nullptr;                   ///< eqs. 4, 7
+  Sweep acceleration = nullptr;              ///< eqs. 5, 8
+  Sweep wall_pressure = nullptr;             ///< eq. 9: density_sum = s of the wall particle
+  Sweep reinitialise = nullptr;              ///< eq. 10: density_sum = new s
+  /// Keeps the candidates that hold a particle within cut-off plus both reaches of one of cluster
+  /// i.
+  std::size_t (*prune)(const PruneTask<T>&) = nullptr;
+  Updates<T> updates;       ///< the loops over particles that go with them
+  std::string_view target;  ///< name of the SIMD target
+};
+
+/// Throws std::invalid_argument when `target` is neither empty nor one that this machine runs,
+/// naming those it does.
+template <typename T>
+[[nodiscard]] Sweeps<T> select_sweeps(const Method& method, const std::string& target);
+
+template <>
+Sweeps<float> select_sweeps<float>(const Method&, const std::string&);
+template <>
+Sweeps<double> select_sweeps<double>(const Method&, const std::string&);
+
+}  // namespace sluice

@@ -1,0 +1,88 @@
+#include "engine/sph/thread_team.hpp"
+
+#include <hwy/cache_control.h>
+
+namespace sluice {
+namespace {
+
+// About 30 microseconds: longer than the serial part between two passes, shorter than a scheduler's
+// time slice.
+constexpr int kSpins = 1000;
+
+/// Waits until `word` is no longer `old`: spins first, then sleeps.
+void wait_while(const std::atomic<std::uint64_t>& word, std::uint64_t old) {
+  for (int i = 0; i < kSpins; ++i) {
+    if (word.load(std::memory_order_acquire) != old) return;
+    hwy::Pause();
+  }
+  word.wait(old, std::memory_order_acquire);
+}
+
+}  // namespace
+
+ThreadTeam::ThreadTeam(int threads) {
+  const auto helpers = static_cast<std::size_t>(threads > 1 ? threads - 1 : 0);
+  shares_ = std::make_unique<Share[]>(helpers + 1);
+  helpers_.reserve(helpers);
+  for (std::size_t i = 0; i < helpers; ++i) helpers_.emplace_back([this, i] { help(i + 1); });
+}
+
+ThreadTeam::~ThreadTeam() {
+  stop_.store(true, std::memory_order_relaxed);
+  state_.fetch_add(kEpoch, std::memory_order_release);
+  state_.notify_all();
+  for (std::thread& helper : helpers_) helper.join();
+}
+
+void ThreadTeam::run_shared(std::size_t tasks, Call call, const void* body) {
+  const std::size_t members = helpers_.size() + 1;
+  for (std::size_t i = 0; i < members; ++i) {
+    shares_[i].next.store(tasks * i / members, std::memory_order_relaxed);
+    shares_[i].end = tasks * (i + 1) / members;
+  }
+  call_ = call;
+  body_ = body;
+  const std::uint64_t epoch = state_.load(std::memory_order_relaxed) + kEpoch;
+  state_.store(epoch | kOpen, std::memory_order_release);
+  state_.notify_all();
+
+  work(0);
+
+  // Whoever has not joined by now finds the door closed; whoever has is waited for.
+  std::uint64_t now = state_.fetch_and(~kOpen, std::memory_order_acq_rel) & ~kOpen;
+  while ((now & kAtWork) != 0) {
+    wait_while(state_, now);
+    now = state_.load(std::memory_order_acquire);
+  }
+}
+
+void ThreadTeam::work(std::size_t self) {
+  const std::size_t members = helpers_.size() + 1;
+  for (std::size_t k = 0; k < members; ++k) {
+    Share& share = shares_[(self + k) % members];
+    for (;;) {
+      const std::size_t task = share.next.fetch_add(1, std::memory_order_relaxed);
+      if (task >= share.end) break;
+      call_(body_, task);
+    }
+  }
+}
+
+void ThreadTeam::help(std::size_t self) {
+  std::uint64_t seen = 0;
+  for (;;) {
+    std::uint64_t now = state_.load(std::memory_order_acquire);
+    if (stop_.load(std::memory_order_relaxed)) return;
+    const bool joinable = (now & kOpen) != 0 && now / kEpoch != seen;
+    if (!joinable) {
+      wait_while(state_, now);
+    } else if (state_.compare_exchange_weak(now, now + 1, std::memory_order_acq_rel)) {
+      seen = now / kEpoch;
+      work(self);
+      state_.fetch_sub(1, std::memory_order_acq_rel);
+      state_.notify_all();
+    }
+  }
+}
+
+}  // namespace sluice

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "engine/sph/pair_arrays.hpp"
+#include "engine/sph/vec.hpp"
+
+namespace sluice {
+
+/// The state of the slots [begin, end) of one chunk, SI units; a field that the integrator does not
+/// carry is null. Empty slots have reach = kNoReach and take part in the arithmetic, but in no
+/// result.
+struct ParticleSpan {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  double* x = nullptr;
+  double* y = nullptr;
+  double* vx = nullptr;
+  double* vy = nullptr;
+  double* density_excess = nullptr;
+  double* vx_half = nullptr;
+  double* vy_half = nullptr;
+  double* density_excess_half = nullptr;
+  double* ax = nullptr;
+  double* ay = nullptr;
+  const double* x_sorted = nullptr;
+  const double* y_sorted = nullptr;
+  const double* reach = nullptr;
+};
+inline constexpr double kNoReach = 1e300;
+
+/// Out of pair sums into rates: D rho/Dt = density_scale * sum, Dv/Dt = acceleration_scale * sum +
+/// gravity.
+template <typename T>
+struct Rates {
+  const T* density_sum = nullptr;
+  const T* x_sum = nullptr;
+  const T* y_sum = nullptr;
+  double density_scale = 0.0;       ///< kg/(m^3 s)
+  double acceleration_scale = 0.0;  ///< m/s^2
+  Vec gravity = Vec::Zero();        ///< m/s^2
+};
+
+/// What a pass over a chunk saw. Maxima and minima do not depend on the order of chunks.
+struct Motion {
+  double speed_sq = 0.0;         ///< largest, m^2/s^2
+  double acceleration_sq = 0.0;  ///< largest, m^2/s^4
+  double min_density_excess = 1e300;
+  double max_density_excess = -1e300;
+  bool moved = false;  ///< a particle is, or will be, farther from its sorted place than its reach
+  bool outside = false;  ///< a particle left the domain
+  bool finite = true;
+
+  void merge(const Motion& other) {
+    speed_sq = std::max(speed_sq, other.speed_sq);
+    acceleration_sq = std::max(acceleration_sq, other.acceleration_sq);
+    min_density_excess = std::min(min_density_excess, other.min_density_excess);
+    max_density_excess = std::max(max_density_excess, other.max_density_excess);
+    moved |= other.moved;
+    outside |= other.outside;
+    finite &= other.finite;
+  }
+};
+
+/// Scales from the state to PairArrays.
+struct PairScales {
+  double inverse_length = 0.0;   ///< 1/h
+  double inverse_speed = 0.0;    ///< 1/c
+  double inverse_density = 0.0;  ///< 1/rho_0
+  Vec hydrostatic =
+      Vec::Zero();  ///< f/c^2, 1/m: psi = s - hydrostatic . x; zero for Molteni-Colagrossi
+  const double* origin_x = nullptr;  ///< per cluster, m
+  const double* origin_y = nullptr;
+};
+
+/// The loops over particles, one SIMD target; T is the type of the pair sums. All state is double.
+template <typename T>
+struct Updates {
+  /// eqs. 13-17: half step, drift, full step. `dt_mean` is the mean of this and the last step.
+  void (*leap_frog)(const ParticleSpan&, const Rates<T>&, double dt_mean, double dt) = nullptr;
+  /// v += dt/2 a, x += dt/2 v.
+  void (*kick_drift)(const ParticleSpan&, double dt) = nullptr;
+  /// rho += dt Drho/Dt, x += dt/2 v.
+  void (*density_drift)(const ParticleSpan&, const Rates<T>&, double dt) = nullptr;
+  /// a = rates, v += dt/2 a.
+  void (*kick)(const ParticleSpan&, const Rates<T>&, double dt) = nullptr;
+  /// State to pair arrays; `diffused` and `stress` where they are kept.
+  void (*write_pairs)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
+  /// New excess (in units of rho_0) into both time levels, by the same increment (eq. 10).
+  void (*reinitialise)(const ParticleSpan&, const T* excess, double reference_density) = nullptr;
+  /// Speeds, densities and displacements; positions are looked at `ahead` seconds later.
+  void (*measure)(const ParticleSpan&, const Box& domain, double ahead, Motion&) = nullptr;
+  /// Largest acceleration of the rates.
+  void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
+};
+
+}  // namespace sluice
