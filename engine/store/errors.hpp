@@ -39,7 +39,17 @@ class StorageError : public std::runtime_error {
 [[nodiscard]] StorageError system_error(std::string_view action, const std::filesystem::path& path,
                                         int error_number);
 
-/// The same fault with the path put before the message.
+/// The same fault with the path put before the message unless it is there.
 [[nodiscard]] StorageError in_file(const std::filesystem::path& path, const StorageError& error);
+
+/// Does `action` and puts the path before the message of its StorageError.
+template <class Action>
+auto naming(const std::filesystem::path& path, const Action& action) {
+  try {
+    return action();
+  } catch (const StorageError& error) {
+    throw in_file(path, error);
+  }
+}
 
 }  // namespace sluice

@@ -1,0 +1,26 @@
+#include "engine/store/digest.hpp"
+
+#include <span>
+
+#include "engine/store/layout.hpp"
+#include "engine/store/trailer.hpp"
+
+namespace sluice {
+
+std::string physics_digest(const Checkpoint& checkpoint) {
+  DigestArchive archive;
+  walk_physics(archive, checkpoint);
+  return archive.finish();
+}
+
+std::string series_digest(const Series& series) {
+  DigestArchive archive;
+  walk_one_series(archive, "/series", series);
+  return archive.finish();
+}
+
+std::string scene_hash(std::string_view identity_text) {
+  return to_hex(hash_bytes(std::as_bytes(std::span(identity_text))));
+}
+
+}  // namespace sluice

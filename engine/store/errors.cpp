@@ -1,0 +1,89 @@
+#include "engine/store/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace sluice {
+namespace {
+
+StorageFault fault_of(int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return StorageFault::disk_full;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return StorageFault::unwritable;
+    default:
+      return StorageFault::io;
+  }
+}
+
+std::string_view advice_for(int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+      return "; make room on this disk and run again: what was saved before is whole";
+    case EDQUOT:
+      return "; make room within the quota and run again: what was saved before is whole";
+    case EFBIG:
+      return "; raise the file size limit (ulimit -f) and run again";
+    case EACCES:
+    case EPERM:
+      return "; check owner and permissions";
+    case EROFS:
+      return "; the disk is mounted read-only";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(StorageFault fault) {
+  switch (fault) {
+    case StorageFault::disk_full:
+      return "disk_full";
+    case StorageFault::io:
+      return "io";
+    case StorageFault::unwritable:
+      return "unwritable";
+    case StorageFault::corrupt:
+      return "corrupt";
+    case StorageFault::unsupported_version:
+      return "unsupported_version";
+    case StorageFault::wrong_scene:
+      return "wrong_scene";
+    case StorageFault::invalid_content:
+      return "invalid_content";
+    case StorageFault::not_ours:
+      return "not_ours";
+    case StorageFault::already_exists:
+      return "already_exists";
+    case StorageFault::locked:
+      return "locked";
+    case StorageFault::no_usable_checkpoint:
+      return "no_usable_checkpoint";
+  }
+  return "unknown";
+}
+
+StorageError system_error(std::string_view action, const std::filesystem::path& path,
+                          int error_number) {
+  return {fault_of(error_number),
+          fmt::format("{}: {}: {}{}", path.string(), action,
+                      std::generic_category().message(error_number), advice_for(error_number))};
+}
+
+StorageError in_file(const std::filesystem::path& path, const StorageError& error) {
+  const std::string prefix = path.string() + ": ";
+  const std::string_view message = error.what();
+  return message.starts_with(prefix)
+             ? error
+             : StorageError(error.fault(), fmt::format("{}{}", prefix, message));
+}
+
+}  // namespace sluice

@@ -1,0 +1,271 @@
+#include "engine/store/layout.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <type_traits>
+
+#include "engine/store/errors.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr std::string_view kLeapFrog = "modified_leap_frog";
+constexpr std::string_view kKickDriftKick = "kick_drift_kick";
+
+[[noreturn]] void throw_corrupt(const std::string& message) {
+  throw StorageError(StorageFault::corrupt, message);
+}
+
+// Values that the file holds in another form than memory does.
+
+std::string to_file(Integrator integrator) {
+  return std::string(integrator == Integrator::modified_leap_frog ? kLeapFrog : kKickDriftKick);
+}
+std::uint64_t to_file(bool flag) { return flag ? 1 : 0; }
+double to_file(double value) { return value; }
+std::uint64_t to_file(std::uint64_t value) { return value; }
+std::uint64_t to_file(RetireCause cause) { return cause == RetireCause::overtopped ? 0 : 1; }
+
+void from_file(const std::string& text, Integrator& integrator) {
+  if (text != kLeapFrog && text != kKickDriftKick) {
+    throw_corrupt(fmt::format("attribute 'integrator' of / is '{}', which is no integrator", text));
+  }
+  integrator = text == kLeapFrog ? Integrator::modified_leap_frog : Integrator::kick_drift_kick;
+}
+void from_file(std::uint64_t number, bool& flag) {
+  if (number > 1) {
+    throw_corrupt(fmt::format("{} where 0 or 1 is expected", number));
+  }
+  flag = number == 1;
+}
+void from_file(double number, double& value) { value = number; }
+void from_file(std::uint64_t number, std::uint64_t& value) { value = number; }
+void from_file(std::uint64_t number, RetireCause& cause) {
+  if (number > 1) {
+    throw_corrupt(fmt::format("data set /retired/cause holds {}, which is no cause", number));
+  }
+  cause = number == 0 ? RetireCause::overtopped : RetireCause::leaked;
+}
+
+/// An attribute that is converted on its way.
+template <class Archive, class Value>
+void converted(Archive& archive, const std::string& name, Value& value) {
+  auto stored = to_file(value);
+  archive.attribute("/", name, stored);
+  if constexpr (Archive::kReads) {
+    from_file(stored, value);
+  }
+}
+
+template <class Archive, class Subject>
+void identity(Archive& archive, Subject& checkpoint) {
+  archive.attribute("/", "scene_hash", checkpoint.scene_hash);
+  archive.attribute("/", "build", checkpoint.build);
+  archive.attribute("/", "simd_target", checkpoint.simd_target);
+  converted(archive, "bit_exact", checkpoint.bit_exact);
+  converted(archive, "integrator", checkpoint.integrator);
+}
+
+/// The fields of kFields that particles of this integrator carry.
+template <class Archive, class Subject>
+void particle_fields(Archive& archive, Integrator integrator, Subject& particles) {
+  archive.group("/particles");
+  archive.count("/particles", "count", particles.x);
+  const Shape shape{particles.size()};
+  for (const Field& field : kFields) {
+    if (carries(integrator, field)) {
+      archive.data_set("/particles/" + std::string(field.name), particles.*field.member, shape,
+                       {std::string(field.unit), std::string(field.description)});
+    }
+  }
+}
+
+/// One member of all retired particles as a data set.
+template <class Archive, class List, class Member>
+void retired_column(Archive& archive, const std::string& name, List& list, Member Retired::*member,
+                    const Label& label) {
+  std::vector<decltype(to_file(Member{}))> column;
+  for (const Retired& retired : list) {
+    column.push_back(to_file(retired.*member));
+  }
+  archive.data_set("/retired/" + name, column, Shape{list.size()}, label);
+  if constexpr (Archive::kReads) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      from_file(column[i], list[i].*member);
+    }
+  }
+}
+
+template <class Archive, class Subject>
+void retired_particles(Archive& archive, Subject& list) {
+  archive.group("/retired");
+  archive.count("/retired", "count", list);
+  retired_column(archive, "id", list, &Retired::id, {"1", "number given at the start"});
+  retired_column(archive, "cause", list, &Retired::cause, {"1", "0 overtopped, 1 leaked"});
+  retired_column(archive, "step", list, &Retired::step, {"1", "step at which it left the domain"});
+  retired_column(archive, "time", list, &Retired::time, {"s", "time at which it left the domain"});
+  retired_column(archive, "x", list, &Retired::x, {"m", "last position, horizontal"});
+  retired_column(archive, "y", list, &Retired::y, {"m", "last position, vertical"});
+}
+
+/// Names and units of the columns; the caller's list is as long as the file's afterwards.
+template <class Archive, class Subject>
+void columns(Archive& archive, const std::string& path, Subject& list) {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+  for (const Series::Column& column : list) {
+    names.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  archive.attribute(path, "columns", names);
+  archive.attribute(path, "units", units);
+  if constexpr (Archive::kReads) {
+    if (names.size() != units.size()) {
+      throw_corrupt(
+          fmt::format("{} has {} columns and {} units", path, names.size(), units.size()));
+    }
+    list.resize(names.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      list[i] = {names[i], units[i]};
+    }
+  }
+}
+
+std::string joined_units(const std::vector<Series::Column>& list) {
+  std::string text;
+  for (const Series::Column& column : list) {
+    text += (text.empty() ? "" : ", ") + column.unit;
+  }
+  return text;
+}
+
+template <class Archive, class Subject>
+void one_series(Archive& archive, const std::string& path, Subject& series) {
+  archive.group(path);
+  archive.attribute(path, "name", series.name);
+  archive.attribute(path, "kind", series.kind);
+  columns(archive, path, series.columns);
+  archive.attribute(path, "next_index", series.next_index);
+  archive.count(path, "count", series.time);
+  const std::uint64_t samples = series.time.size();
+  archive.data_set(path + "/time", series.time, {samples}, {"s", "time of the sample"});
+  archive.data_set(path + "/duration", series.duration, {samples},
+                   {"s", "time since the sensor's sample before"});
+  archive.data_set(path + "/values", series.values, {samples, series.columns.size()},
+                   {joined_units(series.columns), "one column per entry of 'columns'; NaN: dry"});
+  archive.data_set(path + "/weight", series.weight, {samples},
+                   {"1", "kernel weight that carried the value; 0: dry"});
+}
+
+/// Numbered groups and not named ones: a name may hold what a path cannot, and the order counts.
+std::string series_path(std::size_t index) { return fmt::format("/series/{:04}", index); }
+
+template <class Archive, class Subject>
+void series_list(Archive& archive, Subject& list) {
+  archive.group("/series");
+  archive.count("/series", "count", list);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    one_series(archive, series_path(i), list[i]);
+  }
+}
+
+template <class Archive, class Subject>
+void guard_baselines(Archive& archive, Subject& guards) {
+  archive.group("/guards");
+  archive.attribute("/guards", "initial_energy", guards.initial_energy);
+  archive.attribute("/guards", "energy_scale", guards.energy_scale);
+  archive.attribute("/guards", "highest_energy", guards.highest_energy);
+  archive.attribute("/guards", "initial_mass", guards.initial_mass);
+  archive.attribute("/guards", "max_speed_seen", guards.max_speed_seen);
+}
+
+template <class Archive, class Subject>
+void physics(Archive& archive, Subject& checkpoint) {
+  archive.attribute("/", "step", checkpoint.solver.step);
+  archive.attribute("/", "time", checkpoint.solver.time);
+  archive.attribute("/", "time_step", checkpoint.solver.time_step);
+  archive.attribute("/", "next_frame", checkpoint.next_frame);
+  particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
+  retired_particles(archive, checkpoint.solver.retired);
+  series_list(archive, checkpoint.series);
+  guard_baselines(archive, checkpoint.guards);
+}
+
+struct FrameField {
+  std::string_view name, unit, description;
+  std::vector<float> Frame::*member;
+};
+constexpr std::array kFrameFields{
+    FrameField{"x", "m", "position, horizontal", &Frame::x},
+    FrameField{"y", "m", "position, vertical", &Frame::y},
+    FrameField{"vx", "m/s", "velocity, horizontal", &Frame::vx},
+    FrameField{"vy", "m/s", "velocity, vertical", &Frame::vy},
+    FrameField{"pressure", "Pa", "pressure, eq. 3", &Frame::pressure},
+};
+
+template <class Archive, class Subject>
+void frame_layout(Archive& archive, Subject& frame) {
+  archive.attribute("/", "step", frame.step);
+  archive.attribute("/", "time", frame.time);
+  archive.group("/particles");
+  archive.count("/particles", "count", frame.x);
+  const Shape shape{frame.x.size()};
+  for (const FrameField& field : kFrameFields) {
+    archive.data_set("/particles/" + std::string(field.name), frame.*field.member, shape,
+                     {std::string(field.unit), std::string(field.description)});
+  }
+  archive.data_set("/particles/id", frame.id, shape, {"1", "number given at the start"});
+}
+
+}  // namespace
+
+void walk_format(WriteArchive& archive, const Format& format) {
+  archive.attribute("/", "format", std::string(format.name));
+  archive.attribute("/", "version", format.version);
+}
+
+void walk_format(ReadArchive& archive, const Format& format) {
+  std::string name;
+  std::uint64_t version = 0;
+  archive.attribute("/", "format", name);
+  archive.attribute("/", "version", version);
+  if (name != format.name) {
+    throw StorageError(StorageFault::not_ours,
+                       fmt::format("the format is '{}' where '{}' is expected", name, format.name));
+  }
+  if (version != format.version) {
+    throw StorageError(StorageFault::unsupported_version,
+                       fmt::format("version {} of the format {}, this program knows version {}; "
+                                   "use the program that wrote it or a newer one",
+                                   version, name, format.version));
+  }
+}
+
+void walk_identity(WriteArchive& archive, const Checkpoint& checkpoint) {
+  identity(archive, checkpoint);
+}
+void walk_identity(ReadArchive& archive, Checkpoint& checkpoint) { identity(archive, checkpoint); }
+
+void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint) {
+  physics(archive, checkpoint);
+}
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint) { physics(archive, checkpoint); }
+void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint) {
+  physics(archive, checkpoint);
+}
+
+void walk_series_list(WriteArchive& archive, const std::vector<Series>& list) {
+  series_list(archive, list);
+}
+void walk_series_list(ReadArchive& archive, std::vector<Series>& list) {
+  series_list(archive, list);
+}
+void walk_one_series(DigestArchive& archive, const std::string& path, const Series& series) {
+  one_series(archive, path, series);
+}
+
+void walk_frame(WriteArchive& archive, const Frame& frame) { frame_layout(archive, frame); }
+void walk_frame(ReadArchive& archive, Frame& frame) { frame_layout(archive, frame); }
+
+}  // namespace sluice

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/store/archive.hpp"
+#include "engine/store/checkpoint.hpp"
+#include "engine/store/frame_io.hpp"
+#include "engine/store/series.hpp"
+
+namespace sluice {
+
+// What lies where in each of our files: schemas/checkpoint.md in code. Each walk takes an archive
+// (engine/store/archive.hpp) and the thing to write, read or digest; one is const for the writers.
+
+/// Name and version of a file's layout: the root's first two attributes.
+struct Format {
+  std::string_view name;
+  std::uint64_t version;
+};
+inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 1};
+inline constexpr Format kSeriesFormat{"sluice-series", 1};
+inline constexpr Format kFrameFormat{"sluice-frame", 1};
+
+/// Writes the format, or throws StorageError: not_ours or unsupported_version when the file's is
+/// another.
+void walk_format(WriteArchive& archive, const Format& format);
+void walk_format(ReadArchive& archive, const Format& format);
+
+void walk_identity(WriteArchive& archive, const Checkpoint& checkpoint);
+void walk_identity(ReadArchive& archive, Checkpoint& checkpoint);
+
+/// All that the digest covers.
+void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint);
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint);
+void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint);
+
+void walk_series_list(WriteArchive& archive, const std::vector<Series>& list);
+void walk_series_list(ReadArchive& archive, std::vector<Series>& list);
+void walk_one_series(DigestArchive& archive, const std::string& path, const Series& series);
+
+void walk_frame(WriteArchive& archive, const Frame& frame);
+void walk_frame(ReadArchive& archive, Frame& frame);
+
+}  // namespace sluice
