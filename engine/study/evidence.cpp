@@ -77,13 +77,15 @@ std::vector<PressurePair> pair_pressures(const Scene& scene, const std::vector<S
   return pairs;
 }
 
-PressureEvidence weigh(PressurePair pair, const Reference& reference, double shift) {
+PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& reference,
+                       double shift) {
   for (double& time : pair.curve.time) time += shift;
   const auto averages = interval_averages(pair.curve, reference.pressure_times);
   PressureEvidence evidence;
   evidence.sensor = pair.sensor->name;
   evidence.height = pair.sensor->position.y();
-  evidence.smoothing_length = pair.sensor->smoothing_length;
+  evidence.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
+                                                                  : scene.method.smoothing_length;
   evidence.reference = pair.reference->name;
   evidence.peak_statistics = pair.reference->peak;
   evidence.simulation = measure(reference.pressure_times, averages);
@@ -96,7 +98,7 @@ PressureEvidence weigh(PressurePair pair, const Reference& reference, double shi
   return evidence;
 }
 
-void compare_pressures(Evidence& evidence, std::vector<PressurePair> pairs) {
+void compare_pressures(Evidence& evidence, const Scene& scene, std::vector<PressurePair> pairs) {
   if (pairs.empty()) return;
   const auto arrival = first_passage(pairs.front().curve, kArrivalLevel, 1.0);
   if (arrival) evidence.shift = pairs.front().reference->arrival - *arrival;
@@ -104,7 +106,7 @@ void compare_pressures(Evidence& evidence, std::vector<PressurePair> pairs) {
   bool complete = evidence.shift && pairs.size() == evidence.reference->pressures.size();
   for (PressurePair& pair : pairs) {
     evidence.pressures.push_back(
-        weigh(std::move(pair), *evidence.reference, evidence.shift.value_or(0.0)));
+        weigh(std::move(pair), scene, *evidence.reference, evidence.shift.value_or(0.0)));
     const auto& l2 = evidence.pressures.back().relative_l2;
     complete = complete && l2;
     sum += l2.value_or(0.0);
@@ -182,7 +184,7 @@ Evidence compare(const Scene& scene, const std::vector<Series>& series, const Re
   evidence.reference = &reference;
   evidence.tau = tau;
   evidence.time_unit = time_unit(scene);
-  compare_pressures(evidence, pair_pressures(scene, series, reference, tau));
+  compare_pressures(evidence, scene, pair_pressures(scene, series, reference, tau));
   compare_levels(evidence, scene, series);
   compare_front(evidence, scene, series);
   return evidence;

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/scene/vocabulary.hpp"
 #include "engine/study/report.hpp"
 
 namespace sluice {
@@ -17,21 +18,13 @@ std::string number(const std::optional<double>& value, int decimals = 3) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(kNone);
 }
 
-std::string_view name_of(Integrator integrator) {
-  return integrator == Integrator::modified_leap_frog ? "modified_leap_frog" : "kick_drift_kick";
-}
-
-std::string_view name_of(Precision precision) {
-  return precision == Precision::mixed ? "mixed" : "double";
-}
-
 std::string scheme_text(const Method& method) {
-  std::string text = fmt::format("{}, precision {}, C = {:g}", name_of(method.integrator),
-                                 name_of(method.precision), method.courant);
+  std::string text =
+      fmt::format("{}, precision {}, C = {:g}", word_for(kIntegratorWords, method.integrator),
+                  word_for(kPrecisionWords, method.precision), method.courant);
   if (method.diffusion) {
-    const bool plain = method.diffusion->kind == DiffusionKind::molteni_colagrossi;
-    text += fmt::format(", {} delta {:g}", plain ? "molteni_colagrossi" : "fourtakas",
-                        method.diffusion->delta);
+    text += fmt::format(", diffusion {} delta {:g}",
+                        word_for(kDiffusionWords, method.diffusion->kind), method.diffusion->delta);
   }
   if (method.viscosity) text += fmt::format(", viscosity alpha {:g}", method.viscosity->alpha);
   if (method.wall_friction) {
@@ -39,6 +32,7 @@ std::string scheme_text(const Method& method) {
   } else {
     text += ", free slip";
   }
+  if (method.wall_pressure == WallPressure::clamped) text += ", wall pressure clamped";
   if (method.reinitialisation) {
     text += fmt::format(", reinitialisation every {} steps", method.reinitialisation->interval);
   }

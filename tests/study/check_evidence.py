@@ -1,0 +1,88 @@
+"""Holds two reports of `sluice report --json` against what the two schemes must show.
+
+Usage: check_evidence.py PAPER.json RECOMMENDED.json. Prints a line per requirement; exit status 1
+when one is not met or cannot be told.
+"""
+
+import json
+import sys
+
+
+def path(data, *keys):
+    """The value at keys, or None where any of them is missing."""
+    for key in keys:
+        if data is None:
+            return None
+        data = data.get(key)
+    return data
+
+
+class Checks:
+    def __init__(self):
+        self.passed = 0
+        self.failed = 0
+
+    def between(self, what, value, low, high):
+        met = value is not None and low <= value <= high
+        self.passed, self.failed = self.passed + met, self.failed + (not met)
+        shown = "none" if value is None else f"{value:.4g}"
+        print(f"{'pass' if met else 'FAIL'}  {what}: {shown} (must be {low:.4g} to {high:.4g})")
+
+    def above(self, what, value, limit):
+        self.compare(what, value, limit, "above", lambda a, b: a > b)
+
+    def below(self, what, value, limit):
+        self.compare(what, value, limit, "below", lambda a, b: a < b)
+
+    def compare(self, what, value, limit, word, holds):
+        met = value is not None and limit is not None and holds(value, limit)
+        self.passed, self.failed = self.passed + met, self.failed + (not met)
+        shown = "none" if value is None else f"{value:.4g}"
+        print(f"{'pass' if met else 'FAIL'}  {what}: {shown} (must be {word} {limit:.4g})")
+
+
+def leaked_share(report):
+    outcome = report.get("outcome")
+    leaked = path(outcome, "retired", "leaked")
+    if leaked is None:
+        return None
+    return leaked / (outcome["particles"] + leaked + outcome["retired"]["overtopped"])
+
+
+def check_paper(checks, report):
+    evidence = report.get("evidence") or {}
+    sensors = {one["reference"]: one for one in evidence.get("pressures", [])}
+    checks.between("paper's scheme: state completed", float(path(report, "outcome", "state") == "completed"), 1, 1)
+    checks.between("paper's scheme: first peak at P1, P", path(sensors.get("P1"), "simulation", "peak", "value"), 0.85 * 3.3, 1.15 * 3.3)
+    for name in ("P1", "P2", "P3", "P4"):
+        simulated = path(sensors.get(name), "simulation", "plateau")
+        measured = path(sensors.get(name), "experiment", "plateau") or float("nan")
+        verdict = checks.below if name == "P4" else checks.above
+        verdict(f"paper's scheme: plateau at {name} against the experiment's, P", simulated, measured)
+    checks.between("paper's scheme: second rise at P1, T", path(sensors.get("P1"), "simulation", "second_rise", "time"), 6.4, 6.9)
+    checks.between("paper's scheme: mean relative L2 of P1-P4", evidence.get("mean_relative_l2"), 0, 0.36)
+    checks.between("paper's scheme: share of particles that leaked", leaked_share(report), 0, 0.001)
+
+
+def check_recommended(checks, report):
+    evidence = report.get("evidence") or {}
+    checks.between("recommended: state completed", float(path(report, "outcome", "state") == "completed"), 1, 1)
+    checks.between("recommended: mean relative L2 of P1-P4", evidence.get("mean_relative_l2"), 0, 0.22)
+    checks.between("recommended: particles that leaked", path(report, "outcome", "retired", "leaked"), 0, 0)
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__)
+        return 2
+    checks = Checks()
+    with open(sys.argv[1], encoding="utf-8") as stream:
+        check_paper(checks, json.load(stream))
+    with open(sys.argv[2], encoding="utf-8") as stream:
+        check_recommended(checks, json.load(stream))
+    print(f"{checks.passed} passed, {checks.failed} failed")
+    return 1 if checks.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
