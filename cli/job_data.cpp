@@ -1,0 +1,61 @@
+#include "cli/job_data.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "cli/scene_file.hpp"
+#include "cli/verbs.hpp"
+#include "engine/scene/parse.hpp"
+#include "engine/scene/problems.hpp"
+#include "engine/store/checkpoint_io.hpp"
+#include "engine/store/errors.hpp"
+#include "engine/store/series_file.hpp"
+
+namespace sluice {
+
+JobData::JobData(const std::filesystem::path& folder) : paths_(folder) {
+  if (JobFolder::holds_job(folder)) return;
+  throw CommandEnd(
+      ExitCode::usage,
+      fmt::format("{} holds no job: give the folder that sluice run made", folder.string()));
+}
+
+Scene JobData::scene() const {
+  return parse_scene_or_end(read_text(paths_.scene(), kMaxSceneBytes + 1), paths_.scene());
+}
+
+std::vector<Series> JobData::series() const {
+  if (std::filesystem::exists(paths_.series())) return read_series(paths_.series());
+  for (const std::filesystem::path& path : paths_.checkpoints()) {
+    try {
+      return read_checkpoint(path).series;
+    } catch (const StorageError&) {
+      continue;  // Putting it aside is for the run, which holds the lock.
+    }
+  }
+  throw CommandEnd(ExitCode::storage_failure,
+                   fmt::format("{} has no samples yet: its scene has no sensors, or it did not run",
+                               paths_.root().string()));
+}
+
+bool JobData::completed() const {
+  if (!std::filesystem::exists(paths_.outcome())) return false;
+  const auto outcome =
+      nlohmann::json::parse(read_text(paths_.outcome(), 1 << 20), nullptr, /*exceptions=*/false);
+  if (!outcome.is_object() || !outcome.contains("state")) return false;
+  return outcome["state"] == "completed";
+}
+
+const Series& find_series(const std::vector<Series>& all, const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Series& series : all) {
+    if (series.name == name) return series;
+    names.push_back(series.name);
+  }
+  throw CommandEnd(ExitCode::usage,
+                   fmt::format("there is no sensor {}: {}", name, hint(name, names)));
+}
+
+}  // namespace sluice

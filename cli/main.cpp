@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <vector>
+
+#include "cli/verbs.hpp"
+#include "engine/run/build_id.hpp"
+#include "engine/run/run_loop.hpp"
+#include "engine/scene/parse.hpp"
+#include "engine/scene/problems.hpp"
+#include "engine/store/errors.hpp"
+
+namespace sluice {
+namespace {
+
+// Verbs in the order of the help.
+constexpr std::array kVerbs{&add_run,     &add_validate, &add_plan,  &add_inspect,
+                            &add_sensors, &add_export,   &add_report};
+
+int fail(ExitCode code, std::string_view message) {
+  if (!message.empty()) fmt::print(stderr, "sluice: {}\n", message);
+  return static_cast<int>(code);
+}
+
+/// The message for a first word that is no verb; empty when there is nothing to object to.
+std::string unknown_verb(const CLI::App& app, std::string_view word) {
+  if (word.empty() || word.front() == '-') return {};
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  for (const std::string_view name : views) {
+    if (name == word) return {};
+  }
+  return fmt::format("there is no verb {}: {}", word, hint(word, views));
+}
+
+int parse_and_run(CLI::App& app, int argc, char** argv) {
+  try {
+    if (argc > 1) {
+      const std::string message = unknown_verb(app, argv[1]);
+      if (!message.empty()) throw CommandEnd(ExitCode::usage, message);
+    }
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    return fail(ExitCode::usage,
+                fmt::format("{}; see sluice --help or sluice VERB --help", error.what()));
+  } catch (const CommandEnd& end) {
+    return fail(end.code(), end.what());
+  } catch (const SceneError& error) {
+    return fail(ExitCode::invalid_scene, error.what());
+  } catch (const StorageError& error) {
+    return fail(exit_code_of(error.fault()), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::internal_error, "out of memory: see sluice plan for what a scene needs");
+  } catch (const std::exception& error) {
+    return fail(ExitCode::internal_error, fmt::format("unexpected: {}", error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace sluice
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Sluice runs long dam-break simulations as jobs that can be stopped and resumed anywhere.\n"
+      "Exit codes: 0 done, 2 usage, 3 invalid scene, 4 numerical failure, 5 storage failure,\n"
+      "6 no usable checkpoint, 7 folder locked, 85 checkpointed: run the folder again.",
+      "sluice"};
+  app.set_version_flag("--version", "sluice " + sluice::build_id());
+  app.require_subcommand(1);
+  app.footer("Example: sluice run dambreak-quick.json");
+  for (const auto add_verb : sluice::kVerbs) add_verb(app);
+  return sluice::parse_and_run(app, argc, argv);
+}

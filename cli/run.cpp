@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/machine.hpp"
+#include "cli/scene_file.hpp"
+#include "cli/verbs.hpp"
+#include "engine/run/reporter.hpp"
+#include "engine/run/run_loop.hpp"
+#include "engine/scene/canonical.hpp"
+#include "engine/store/job_folder.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class ProgressForm { automatic, bar, json, none };
+
+struct RunArguments {
+  std::string target;
+  std::string folder;
+  int threads = 0;
+  std::string simd;
+  ProgressForm progress = ProgressForm::automatic;
+  std::optional<std::uint64_t> stop_after_step;
+  std::optional<std::uint64_t> checkpoint_every;
+  bool no_checkpoint = false;
+  double storage_patience = RunOptions{}.storage_patience;
+};
+
+/// A scene's name as the name of a folder.
+std::string folder_name(const std::string& scene_name) {
+  std::string name;
+  for (const char letter : scene_name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_' ||
+                       letter == '-' || (letter == '.' && !name.empty());
+    name += plain ? letter : '-';
+  }
+  return name.empty() ? "job" : name;
+}
+
+/// The folder holds this very scene, or one that only ends at another time or has another name.
+void adopt_scene(JobFolder& folder, const SceneFile& wanted) {
+  const fs::path path = folder.paths().scene();
+  const Scene present = parse_scene_or_end(folder.scene_text(), path);
+  if (identity_text(present) != identity_text(wanted.scene)) {
+    throw CommandEnd(ExitCode::invalid_scene,
+                     fmt::format("{} holds a run of another scene: choose another folder with "
+                                 "--folder, or remove that one",
+                                 folder.paths().root().string()));
+  }
+  if (canonical_text(present) != canonical_text(wanted.scene)) {
+    folder.publish_text(path, wanted.text);
+  }
+}
+
+struct Job {
+  JobFolder folder;
+  Scene scene;
+};
+
+Job open_job(const fs::path& root) {
+  JobFolder folder = JobFolder::open(root);
+  Scene scene = parse_scene_or_end(folder.scene_text(), folder.paths().scene());
+  return {std::move(folder), std::move(scene)};
+}
+
+Job make_job(const fs::path& scene_path, const std::string& wanted_folder) {
+  SceneFile file = read_scene(scene_path);
+  const fs::path root = wanted_folder.empty() ? folder_name(file.scene.name) : wanted_folder;
+  if (!JobFolder::holds_job(root)) {
+    return {JobFolder::create(root, file.text), std::move(file.scene)};
+  }
+  JobFolder folder = JobFolder::open(root);
+  adopt_scene(folder, file);
+  return {std::move(folder), std::move(file.scene)};
+}
+
+Job find_job(const RunArguments& arguments) {
+  if (!fs::is_directory(arguments.target)) return make_job(arguments.target, arguments.folder);
+  if (!arguments.folder.empty()) {
+    throw CommandEnd(ExitCode::usage, "--folder goes with a scene, not with a folder");
+  }
+  return open_job(arguments.target);
+}
+
+RunOptions options_of(const RunArguments& arguments, const Scene& scene) {
+  RunOptions options;
+  options.execution = {arguments.threads > 0 ? arguments.threads : default_threads(scene),
+                       arguments.simd};
+  options.stop_after_step = arguments.stop_after_step;
+  options.storage_patience = arguments.storage_patience;
+  if (arguments.no_checkpoint) options.checkpoints = CheckpointPolicy::at_end_only;
+  if (arguments.checkpoint_every) {
+    options.checkpoints = CheckpointPolicy::every_steps;
+    options.checkpoint_steps = *arguments.checkpoint_every;
+  }
+  return options;
+}
+
+ProgressForm chosen_form(ProgressForm form) {
+  if (form != ProgressForm::automatic) return form;
+  return isatty(STDOUT_FILENO) == 1 ? ProgressForm::bar : ProgressForm::json;
+}
+
+std::unique_ptr<Reporter> make_reporter(ProgressForm form) {
+  if (form == ProgressForm::bar) return std::make_unique<BarReporter>(stdout);
+  if (form == ProgressForm::json) return std::make_unique<JsonReporter>(stdout);
+  return std::make_unique<SilentReporter>();
+}
+
+std::string next_commands(const Job& job, const Outcome& outcome) {
+  const std::string root = job.folder.paths().root().string();
+  std::string text;
+  if (outcome.exit_code != ExitCode::done) {
+    text += fmt::format("  to go on:   sluice run {}\n", root);
+  }
+  const auto checkpoints = job.folder.paths().checkpoints();
+  if (!checkpoints.empty()) {
+    text += fmt::format("  to look in: sluice inspect {}\n", checkpoints.front().string());
+  }
+  for (const Sensor& sensor : job.scene.sensors) {
+    if (sensor.kind != SensorKind::pressure) continue;
+    return text + fmt::format("  to plot:    sluice sensors {} {} --filter gaussian --tau 0.002\n",
+                              root, sensor.name);
+  }
+  return text;
+}
+
+void run(const RunArguments& arguments) {
+  Job job = find_job(arguments);
+  const ProgressForm form = chosen_form(arguments.progress);
+  const auto reporter = make_reporter(form);
+  const Outcome outcome =
+      run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
+  // Stdout belongs to the JSON lines where they are written.
+  std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
+  fmt::print(out, "{}{}", summary_text(outcome), next_commands(job, outcome));
+  if (outcome.exit_code == ExitCode::done) return;
+  const bool stopped = outcome.exit_code == ExitCode::checkpointed;
+  throw CommandEnd(outcome.exit_code, stopped ? "" : outcome.reason);
+}
+
+void add_test_options(CLI::App& verb, RunArguments& arguments) {
+  const std::string group = "For tests and scripts";
+  verb.add_option("--stop-after-step", arguments.stop_after_step,
+                  "Stop with a checkpoint, exit 85, once this step is done")
+      ->group(group);
+  auto* every = verb.add_option("--checkpoint-every", arguments.checkpoint_every,
+                                "A checkpoint every N steps instead of by its cost")
+                    ->check(CLI::PositiveNumber)
+                    ->group(group);
+  verb.add_flag("--no-checkpoint", arguments.no_checkpoint,
+                "No checkpoint before the end or a stop")
+      ->excludes(every)
+      ->group(group);
+  verb.add_option("--storage-patience", arguments.storage_patience,
+                  "Seconds to go on trying when the disk is full or refuses")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group(group);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* verb = app.add_subcommand("run", "Run a scene, or go on with the job in a folder");
+  verb->add_option("target", arguments->target, "A scene (JSON) or a job's folder")
+      ->required()
+      ->check(CLI::ExistingPath);
+  verb->add_option("--folder", arguments->folder,
+                   "The job's folder for a scene; by default the scene's name in this folder");
+  add_execution_options(*verb, arguments->threads, arguments->simd);
+  const std::map<std::string, ProgressForm> forms{{"auto", ProgressForm::automatic},
+                                                  {"bar", ProgressForm::bar},
+                                                  {"json", ProgressForm::json},
+                                                  {"none", ProgressForm::none}};
+  verb->add_option("--progress", arguments->progress,
+                   "auto: a bar on a terminal, else one JSON line a second")
+      ->transform(CLI::CheckedTransformer(forms).description("{auto,bar,json,none}"));
+  add_test_options(*verb, *arguments);
+  verb->footer(
+      "SIGUSR1 asks for a checkpoint; SIGTERM or Ctrl-C stops with one (exit 85), a second one at "
+      "once.\nExample: sluice run dambreak-quick.json --folder first-try && sluice run first-try");
+  verb->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace sluice

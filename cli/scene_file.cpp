@@ -1,0 +1,46 @@
+#include "cli/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/verbs.hpp"
+#include "engine/scene/parse.hpp"
+#include "engine/store/errors.hpp"
+#include "engine/store/file_system.hpp"
+
+namespace sluice {
+namespace {
+
+std::string read_scene_text(const std::filesystem::path& path) {
+  try {
+    // One byte more than a scene may have, so that the parser finds it too long and says so.
+    return read_text(path, kMaxSceneBytes + 1);
+  } catch (const StorageError& error) {
+    throw CommandEnd(ExitCode::invalid_scene, error.what());
+  }
+}
+
+}  // namespace
+
+Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where) {
+  ParseResult result = parse_scene(text);
+  if (result.scene) return *std::move(result.scene);
+  for (const Problem& problem : result.problems) {
+    fmt::print(stderr, "{}: {}: {}\n", where.string(),
+               problem.pointer.empty() ? "(the whole scene)" : problem.pointer, problem.message);
+  }
+  const std::size_t count = result.problems.size();
+  throw CommandEnd(ExitCode::invalid_scene,
+                   fmt::format("{} is no valid scene: {} problem{}", where.string(), count,
+                               count == 1 ? "" : "s"));
+}
+
+SceneFile read_scene(const std::filesystem::path& path) {
+  SceneFile file;
+  file.text = read_scene_text(path);
+  file.scene = parse_scene_or_end(file.text, path);
+  return file;
+}
+
+}  // namespace sluice

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "engine/scene/scene.hpp"
+
+namespace sluice {
+
+/// A scene with the text it came from.
+struct SceneFile {
+  std::string text;
+  Scene scene;
+};
+
+/// Reads and checks a scene. Prints every problem to stderr, one line each with its JSON pointer,
+/// and throws CommandEnd(invalid_scene) when there are any.
+[[nodiscard]] SceneFile read_scene(const std::filesystem::path& path);
+
+/// The same for a text that stands in `where`.
+[[nodiscard]] Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where);
+
+}  // namespace sluice

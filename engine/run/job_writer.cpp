@@ -1,0 +1,167 @@
+#include "engine/run/job_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "engine/store/frame_io.hpp"
+#include "engine/store/series_file.hpp"
+
+namespace sluice {
+
+JobWriter::JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter)
+    : folder_(&folder),
+      options_(options),
+      reporter_(&reporter),
+      backoff_(options.storage_patience),
+      next_series_(series_interval(0.0)) {}
+
+void JobWriter::resumed_at(std::uint64_t step) {
+  checkpoint_step_ = step;
+  checkpoint_at_ = clock_.seconds();
+}
+
+void JobWriter::checkpoint_when_due(const Simulation& simulation) {
+  if (checkpoint_due(simulation)) checkpoint_soon(simulation);
+}
+
+void JobWriter::checkpoint_soon(const Simulation& simulation) {
+  const double now = clock_.seconds();
+  if (backoff_.waiting(now) || checkpoint_step_ == simulation.solver().step_count()) return;
+  try {
+    try_checkpoint(simulation);
+    backoff_.succeeded();
+  } catch (const StorageError& error) {
+    backoff_.failed(now);
+    if (backoff_.exhausted() || error.fault() == StorageFault::invalid_content) throw;
+    warn("a checkpoint", error, backoff_.next_try() - now);
+  }
+}
+
+void JobWriter::checkpoint_surely(const Simulation& simulation) {
+  if (checkpoint_step_ == simulation.solver().step_count()) return;
+  persist("the checkpoint", [&] { try_checkpoint(simulation); });
+}
+
+void JobWriter::try_checkpoint(const Simulation& simulation) {
+  if (const auto broken = simulation.violation()) {
+    reporter_->event("warning", {{"message", "no checkpoint from this state: " + broken->text()}});
+    return;
+  }
+  write_checkpoint(simulation);
+}
+
+void JobWriter::write_checkpoint(const Simulation& simulation) {
+  const double start = clock_.seconds();
+  const auto path = folder_->write_checkpoint(simulation.checkpoint());
+  const double end = clock_.seconds();
+  checkpoint_step_ = simulation.solver().step_count();
+  checkpoint_at_ = end;
+  reporter_->event("checkpoint", {{"file", path.filename().string()},
+                                  {"step", simulation.solver().step_count()},
+                                  {"time", simulation.solver().time()},
+                                  {"seconds", end - start}});
+  folder_->prune();
+  checkpoint_cost_ = clock_.seconds() - start;
+  checkpoint_seconds_ += checkpoint_cost_;
+  ++checkpoints_;
+}
+
+bool JobWriter::checkpoint_due(const Simulation& simulation) const {
+  switch (options_.checkpoints) {
+    case CheckpointPolicy::by_cost:
+      return !checkpoint_at_ ||
+             clock_.seconds() - *checkpoint_at_ >= checkpoint_interval(checkpoint_cost_);
+    case CheckpointPolicy::every_steps:
+      return simulation.solver().step_count() % options_.checkpoint_steps == 0;
+    case CheckpointPolicy::at_end_only:
+      return false;
+  }
+  return false;
+}
+
+void JobWriter::write_due_frame(Simulation& simulation) {
+  const auto index = simulation.due_frame();
+  if (!index) return;
+  const double start = clock_.seconds();
+  const Frame frame = make_frame(simulation.solver().state(), simulation.scene().method);
+  const auto path = folder_->paths().frame(*index);
+  persist("a frame", [&] {
+    std::filesystem::create_directories(path.parent_path());
+    write_frame(path, frame);
+  });
+  simulation.frame_written();
+  output_seconds_ += clock_.seconds() - start;
+}
+
+void JobWriter::refresh_series(const Simulation& simulation) {
+  const double start = clock_.seconds();
+  if (simulation.series().empty() || start < next_series_) return;
+  try {
+    write_series(folder_->paths().series(), simulation.series());
+  } catch (const StorageError& error) {
+    warn("series.h5", error, 10.0);
+    next_series_ = start + 10.0;
+    return;
+  }
+  const double end = clock_.seconds();
+  output_seconds_ += end - start;
+  next_series_ = end + series_interval(end - start);
+}
+
+void JobWriter::finish_series(const Simulation& simulation) {
+  if (simulation.series().empty()) return;
+  const double start = clock_.seconds();
+  persist("series.h5", [&] {
+    write_series(folder_->paths().series(), simulation.series(), Durability::power_cut);
+  });
+  output_seconds_ += clock_.seconds() - start;
+}
+
+void JobWriter::write_outcome(const Outcome& outcome) {
+  try {
+    folder_->publish_text(folder_->paths().outcome(), to_json(outcome).dump(2) + "\n");
+  } catch (const StorageError& error) {
+    reporter_->event("warning",
+                     {{"message", fmt::format("outcome.json was not written: {}", error.what())}});
+  }
+}
+
+std::optional<double> JobWriter::checkpoint_age() const {
+  if (!checkpoint_at_) return {};
+  return clock_.seconds() - *checkpoint_at_;
+}
+
+void JobWriter::account(Account& account) const {
+  account.checkpoint_seconds = checkpoint_seconds_;
+  account.output_seconds = output_seconds_;
+  account.checkpoints = checkpoints_;
+}
+
+void JobWriter::persist(std::string_view what, const std::function<void()>& write) {
+  Backoff backoff(options_.storage_patience);
+  for (;;) {
+    try {
+      write();
+      return;
+    } catch (const StorageError& error) {
+      const double now = clock_.seconds();
+      backoff.failed(now);
+      if (backoff.exhausted() || error.fault() == StorageFault::invalid_content) throw;
+      warn(what, error, backoff.next_try() - now);
+      std::this_thread::sleep_for(std::chrono::duration<double>(backoff.next_try() - now));
+    }
+  }
+}
+
+void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {
+  reporter_->event("warning",
+                   {{"message", fmt::format("{} was not written, next try in {:.1f} s: {}", what,
+                                            wait, error.what())},
+                    {"fault", to_string(error.fault())}});
+}
+
+}  // namespace sluice

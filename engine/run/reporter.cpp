@@ -1,0 +1,122 @@
+#include "engine/run/reporter.hpp"
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "engine/store/file_system.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Names from outside may hold bytes that are no UTF-8: they must not end a run.
+std::string line_of(const Json& object) {
+  return object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json with_event(std::string_view name, const Json& fields) {
+  Json object{{"event", name}};
+  object.update(fields);
+  return object;
+}
+
+void put(std::FILE* out, const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), out);
+  std::fflush(out);
+}
+
+std::size_t terminal_width(std::FILE* out) {
+  winsize size{};
+  const bool known = ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  // The last column stays free: some terminals wrap when it is written.
+  return known ? size.ws_col - 1U : 99U;
+}
+
+Json optional_number(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+std::string describe(std::string_view name, const Json& fields) {
+  const std::string message = fields.value("message", "");
+  if (!message.empty()) return fmt::format("{}: {}", name, message);
+  return std::string(name);
+}
+
+}  // namespace
+
+Json to_json(const Progress& progress) {
+  Json object{{"step", progress.step},
+              {"time", progress.time},
+              {"end_time", progress.end_time},
+              {"fraction", progress.fraction()},
+              {"particles", progress.particles},
+              {"time_step", progress.time_step},
+              {"step_limit", to_string(progress.step_limit)},
+              {"max_speed", progress.max_speed},
+              {"elapsed", progress.elapsed},
+              {"eta", optional_number(progress.remaining())},
+              {"checkpoint_age", optional_number(progress.checkpoint_age)}};
+  object["model_seconds_per_second"] =
+      progress.rate ? Json(progress.rate->model_time) : Json(nullptr);
+  object["steps_per_second"] = progress.rate ? Json(progress.rate->steps) : Json(nullptr);
+  object["particle_steps_per_second"] =
+      progress.rate ? Json(progress.rate->particle_steps) : Json(nullptr);
+  return object;
+}
+
+Json to_json(const Diagnosis& diagnosis) {
+  return Json{{"reason", diagnosis.reason},
+              {"step", diagnosis.step},
+              {"time", diagnosis.time},
+              {"particle", optional_number(diagnosis.particle)},
+              {"value", diagnosis.value},
+              {"limit", diagnosis.limit},
+              {"suggestion", diagnosis.suggestion}};
+}
+
+void JsonReporter::progress(const Progress& progress) { event("progress", to_json(progress)); }
+
+void JsonReporter::event(std::string_view name, const Json& fields) {
+  put(out_, line_of(with_event(name, fields)));
+}
+
+void BarReporter::progress(const Progress& progress) {
+  std::string text = progress_bar(progress, terminal_width(out_));
+  const std::size_t length = text.size();
+  if (length < drawn_) text.append(drawn_ - length, ' ');
+  drawn_ = length;
+  put(out_, fmt::format("\r{}", text));
+}
+
+void BarReporter::event(std::string_view name, const Json& fields) {
+  if (name == "checkpoint") return;
+  const std::string clear = drawn_ > 0 ? fmt::format("\r{:{}}\r", "", drawn_) : "";
+  drawn_ = 0;
+  put(out_, fmt::format("{}{}\n", clear, describe(name, fields)));
+}
+
+LoggingReporter::LoggingReporter(Reporter& next, std::filesystem::path log)
+    : next_(&next), log_(std::move(log)) {}
+
+void LoggingReporter::event(std::string_view name, const Json& fields) {
+  next_->event(name, fields);
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  Json line{{"at", fmt::format("{:%FT%TZ}", now)}};
+  line.update(with_event(name, fields));
+  const FileDescriptor file(
+      ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644));
+  if (file.get() < 0) return;
+  const std::string text = line_of(line);
+  // One write, so that a line is whole or cut short at the end of the file.
+  [[maybe_unused]] const auto written = ::write(file.get(), text.data(), text.size());
+}
+
+}  // namespace sluice

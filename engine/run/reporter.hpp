@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+
+#include "engine/run/guards.hpp"
+#include "engine/run/progress.hpp"
+
+namespace sluice {
+
+/// Who hears how a run goes. Reporting never fails a run: a reader who went away is ignored.
+class Reporter {
+ public:
+  virtual ~Reporter() = default;
+  /// About once a second.
+  virtual void progress(const Progress& progress) = 0;
+  /// `name`: started, resumed, checkpoint, warning, finished, stopped or failed. `fields` is an
+  /// object; a warning and a failure have "message".
+  virtual void event(std::string_view name, const nlohmann::ordered_json& fields) = 0;
+};
+
+/// One JSON object per line: {"event": name, ...}. The service reads these.
+class JsonReporter final : public Reporter {
+ public:
+  explicit JsonReporter(std::FILE* out) : out_(out) {}
+  void progress(const Progress& progress) override;
+  void event(std::string_view name, const nlohmann::ordered_json& fields) override;
+
+ private:
+  std::FILE* out_;
+};
+
+/// A bar that redraws itself and a line for each event that a person wants to see.
+class BarReporter final : public Reporter {
+ public:
+  explicit BarReporter(std::FILE* out) : out_(out) {}
+  void progress(const Progress& progress) override;
+  void event(std::string_view name, const nlohmann::ordered_json& fields) override;
+
+ private:
+  std::FILE* out_;
+  std::size_t drawn_ = 0;
+};
+
+class SilentReporter final : public Reporter {
+ public:
+  void progress(const Progress&) override {}
+  void event(std::string_view, const nlohmann::ordered_json&) override {}
+};
+
+/// Passes everything on and appends all but progress to a log file with the time of day. The log is
+/// the one file of a job that grows in place; a line that cannot be written is lost.
+class LoggingReporter final : public Reporter {
+ public:
+  LoggingReporter(Reporter& next, std::filesystem::path log);
+  void progress(const Progress& progress) override { next_->progress(progress); }
+  void event(std::string_view name, const nlohmann::ordered_json& fields) override;
+
+ private:
+  Reporter* next_;
+  std::filesystem::path log_;
+};
+
+[[nodiscard]] nlohmann::ordered_json to_json(const Progress& progress);
+[[nodiscard]] nlohmann::ordered_json to_json(const Diagnosis& diagnosis);
+
+}  // namespace sluice

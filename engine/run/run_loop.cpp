@@ -1,0 +1,253 @@
+#include "engine/run/run_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "engine/run/build_id.hpp"
+#include "engine/run/job_writer.hpp"
+#include "engine/run/signals.hpp"
+#include "engine/run/simulation.hpp"
+#include "engine/run/stopwatch.hpp"
+#include "engine/scene/canonical.hpp"
+#include "engine/store/digest.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One attempt at a job, from its first step to its last.
+class RunLoop {
+ public:
+  RunLoop(JobFolder& folder, const RunOptions& options, Reporter& reporter, Simulation& simulation)
+      : options_(options),
+        reporter_(&reporter),
+        simulation_(&simulation),
+        writer_(folder, options, reporter),
+        first_step_(simulation.solver().step_count()),
+        first_time_(simulation.solver().time()) {}
+
+  void resumed_at(std::uint64_t step) { writer_.resumed_at(step); }
+
+  /// Steps until the end or a stop and leaves everything on disk. Never throws for a numerical or
+  /// a storage failure: they are outcomes.
+  Outcome run() {
+    Outcome outcome = attempt();
+    writer_.write_outcome(outcome);
+    return outcome;
+  }
+
+ private:
+  Outcome attempt() {
+    try {
+      advance_to_end();
+      writer_.checkpoint_surely(*simulation_);
+      writer_.finish_series(*simulation_);
+      return describe(simulation_->finished() ? ExitCode::done : ExitCode::checkpointed,
+                      simulation_->finished() ? "" : stop_reason_);
+    } catch (const NumericalFailure& failure) {
+      return fail(failure);
+    } catch (const StorageError& error) {
+      return describe(ExitCode::storage_failure, error.what());
+    }
+  }
+
+  void advance_to_end() {
+    rate_.add(0.0, first_time_, first_step_, 0);
+    writer_.write_due_frame(*simulation_);
+    writer_.checkpoint_when_due(*simulation_);
+    while (!simulation_->finished() && !stop_asked()) {
+      simulation_->step();
+      writer_.write_due_frame(*simulation_);
+      report();
+      writer_.checkpoint_when_due(*simulation_);
+      writer_.refresh_series(*simulation_);
+    }
+  }
+
+  bool stop_asked() {
+    const Request request = signals_.take();
+    if (request == Request::checkpoint) writer_.checkpoint_soon(*simulation_);
+    if (request == Request::stop) stop_reason_ = "stopped by a signal";
+    const bool enough =
+        options_.stop_after_step && simulation_->solver().step_count() >= *options_.stop_after_step;
+    if (enough) stop_reason_ = "stopped after the step asked for";
+    return enough || request == Request::stop;
+  }
+
+  void report() {
+    for (const Diagnosis& warning : simulation_->take_warnings()) {
+      Json fields = to_json(warning);
+      fields["message"] = warning.text();
+      reporter_->event("warning", fields);
+    }
+    const double now = clock_.seconds();
+    if (now < next_report_) return;
+    next_report_ = now + 1.0;
+    const Solver& solver = simulation_->solver();
+    rate_.add(now, solver.time(), solver.step_count(), simulation_->particle_steps());
+    reporter_->progress(progress(now));
+  }
+
+  Progress progress(double now) const {
+    const Solver& solver = simulation_->solver();
+    Progress progress;
+    progress.step = solver.step_count();
+    progress.time = solver.time();
+    progress.end_time = simulation_->scene().end_time;
+    progress.time_step = solver.time_step();
+    progress.step_limit = solver.step_limit();
+    progress.particles = solver.particle_count();
+    progress.max_speed = solver.extremes().max_speed;
+    progress.elapsed = now;
+    progress.checkpoint_age = writer_.checkpoint_age();
+    progress.rate = rate_.rate();
+    return progress;
+  }
+
+  /// The samples up to the failure help to understand it; the checkpoints stay as they are.
+  Outcome fail(const NumericalFailure& failure) {
+    try {
+      writer_.finish_series(*simulation_);
+    } catch (const StorageError& error) {
+      reporter_->event("warning", {{"message", error.what()}});
+    }
+    Outcome outcome = describe(ExitCode::numerical_failure, failure.what());
+    outcome.diagnosis = failure.diagnosis();
+    return outcome;
+  }
+
+  Outcome describe(ExitCode code, std::string reason) const {
+    Outcome outcome = describe_simulation(*simulation_);
+    outcome.exit_code = code;
+    outcome.reason = std::move(reason);
+    outcome.account.seconds = clock_.seconds();
+    outcome.account.steps = simulation_->solver().step_count() - first_step_;
+    writer_.account(outcome.account);
+    if (code == ExitCode::done || code == ExitCode::checkpointed) {
+      outcome.physics_digest = physics_digest(simulation_->checkpoint());
+    }
+    return outcome;
+  }
+
+  RunOptions options_;
+  Reporter* reporter_;
+  Simulation* simulation_;
+  SignalRequests signals_;
+  Stopwatch clock_;
+  JobWriter writer_;
+  RateMeter rate_;
+  std::uint64_t first_step_;
+  double first_time_;
+  double next_report_ = 1.0;
+  std::string stop_reason_;
+};
+
+Json started_fields(const Simulation& simulation, const JobFolder& folder) {
+  const Solver& solver = simulation.solver();
+  return Json{{"scene", simulation.scene().name},
+              {"folder", folder.paths().root().string()},
+              {"step", solver.step_count()},
+              {"time", solver.time()},
+              {"end_time", simulation.scene().end_time},
+              {"particles", solver.particle_count()},
+              {"wall_particles", solver.wall_count()},
+              {"threads", solver.threads()},
+              {"simd_target", solver.simd_target()},
+              {"build", build_id()},
+              {"bit_exact", simulation.bit_exact()}};
+}
+
+void report_rejected(const std::vector<std::string>& reasons, Reporter& reporter) {
+  for (const std::string& reason : reasons) reporter.event("warning", {{"message", reason}});
+}
+
+Expectation expectation_of(const Scene& scene) {
+  return {scene_hash(identity_text(scene)), scene.method.integrator};
+}
+
+/// A scene whose first state violates a guard has no simulation to describe.
+Outcome failed_at_start(JobFolder& folder, const Scene& scene, const NumericalFailure& failure) {
+  Outcome outcome;
+  outcome.exit_code = ExitCode::numerical_failure;
+  outcome.reason = failure.what();
+  outcome.diagnosis = failure.diagnosis();
+  outcome.build = build_id();
+  outcome.end_time = scene.end_time;
+  folder.publish_text(folder.paths().outcome(), to_json(outcome).dump(2) + "\n");
+  return outcome;
+}
+
+void report_outcome(const Outcome& outcome, Reporter& reporter) {
+  Json fields = to_json(outcome);
+  if (!outcome.reason.empty()) fields["message"] = outcome.reason;
+  if (outcome.exit_code == ExitCode::done) return reporter.event("finished", fields);
+  reporter.event(outcome.exit_code == ExitCode::checkpointed ? "stopped" : "failed", fields);
+}
+
+Outcome run_from_scene(JobFolder& folder, const Scene& scene, const RunOptions& options,
+                       Reporter& reporter) {
+  try {
+    Simulation simulation(scene, options.execution);
+    reporter.event("started", started_fields(simulation, folder));
+    return RunLoop(folder, options, reporter, simulation).run();
+  } catch (const NumericalFailure& failure) {
+    return failed_at_start(folder, scene, failure);
+  }
+}
+
+Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOptions& options,
+                            Reporter& reporter, Restored restored) {
+  report_rejected(restored.rejected, reporter);
+  Simulation simulation(scene, options.execution, std::move(restored.checkpoint));
+  Json fields = started_fields(simulation, folder);
+  fields["file"] = restored.path.filename().string();
+  reporter.event("resumed", fields);
+  RunLoop loop(folder, options, reporter, simulation);
+  loop.resumed_at(simulation.solver().step_count());
+  return loop.run();
+}
+
+}  // namespace
+
+Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options,
+                Reporter& reporter) {
+  LoggingReporter logging(reporter, folder.paths().log());
+  std::optional<Restored> restored = folder.newest_checkpoint(expectation_of(scene));
+  // An outcome of an earlier attempt says nothing about this one.
+  std::error_code ignored;
+  std::filesystem::remove(folder.paths().outcome(), ignored);
+  const Outcome outcome =
+      restored ? run_from_checkpoint(folder, scene, options, logging, *std::move(restored))
+               : run_from_scene(folder, scene, options, logging);
+  report_outcome(outcome, logging);
+  return outcome;
+}
+
+ExitCode exit_code_of(StorageFault fault) {
+  switch (fault) {
+    case StorageFault::locked:
+      return ExitCode::folder_locked;
+    case StorageFault::no_usable_checkpoint:
+    case StorageFault::unsupported_version:
+      return ExitCode::no_usable_checkpoint;
+    case StorageFault::wrong_scene:
+      return ExitCode::invalid_scene;
+    case StorageFault::not_ours:
+    case StorageFault::already_exists:
+      return ExitCode::usage;
+    case StorageFault::disk_full:
+    case StorageFault::io:
+    case StorageFault::unwritable:
+    case StorageFault::corrupt:
+    case StorageFault::invalid_content:
+      return ExitCode::storage_failure;
+  }
+  return ExitCode::storage_failure;
+}
+
+}  // namespace sluice

@@ -1,0 +1,176 @@
+#include "engine/run/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "engine/run/build_id.hpp"
+#include "engine/run/schedule.hpp"
+#include "engine/scene/canonical.hpp"
+#include "engine/scene/initial.hpp"
+#include "engine/store/digest.hpp"
+#include "engine/store/errors.hpp"
+
+namespace sluice {
+namespace {
+
+Solver start_solver(const Scene& scene, const Execution& execution) {
+  const InitialParticles initial = create_particles(scene);
+  return Solver(scene.method, initial.state, initial.walls, execution);
+}
+
+Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
+  return Solver(scene.method, state, create_particles(scene).walls, execution);
+}
+
+void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
+  if (checkpoint.scene_hash == hash) return;
+  throw StorageError(StorageFault::wrong_scene,
+                     fmt::format("the checkpoint of step {} belongs to scene {}, not to this scene "
+                                 "{}; run this scene in a folder of its own (--folder)",
+                                 checkpoint.solver.step, checkpoint.scene_hash, hash));
+}
+
+/// Samples cannot be matched to sensors by chance: names and columns must agree.
+void require_same_series(const std::vector<Series>& expected, const std::vector<Series>& found) {
+  const auto matches = [](const Series& a, const Series& b) {
+    return a.name == b.name && a.kind == b.kind && a.columns.size() == b.columns.size();
+  };
+  if (std::equal(expected.begin(), expected.end(), found.begin(), found.end(), matches)) return;
+  throw StorageError(StorageFault::corrupt,
+                     "the checkpoint's series are not those of the scene's sensors");
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Simulation::Simulation(Scene scene, const Execution& execution)
+    : scene_(std::move(scene)),
+      scene_hash_(scene_hash(identity_text(scene_))),
+      limits_(GuardLimits::for_method(scene_.method)),
+      sensors_(scene_.sensors, scene_.method),
+      solver_(start_solver(scene_, execution)),
+      series_(sensors_.empty_series()) {
+  const Energy energy = solver_.energy();
+  baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
+  if (const auto broken = violation()) throw NumericalFailure(*broken);
+  sample();
+}
+
+Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint checkpoint)
+    : scene_(std::move(scene)),
+      scene_hash_(scene_hash(identity_text(scene_))),
+      limits_(GuardLimits::for_method(scene_.method)),
+      sensors_(scene_.sensors, scene_.method),
+      solver_(resume_solver(scene_, execution, checkpoint.solver)),
+      series_(std::move(checkpoint.series)),
+      baselines_(checkpoint.guards),
+      next_frame_(checkpoint.next_frame) {
+  require_same_scene(scene_hash_, checkpoint);
+  require_same_series(sensors_.empty_series(), series_);
+  bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
+               checkpoint.simd_target == solver_.simd_target();
+  count_retired();
+}
+
+void Simulation::step() {
+  if (failed_) throw std::logic_error("a simulation that failed takes no further step");
+  solver_.step();
+  particle_steps_ += solver_.particle_count();
+  count_retired();
+  baselines_.max_speed_seen = std::max(baselines_.max_speed_seen, solver_.extremes().max_speed);
+
+  std::optional<double> energy;
+  const bool periodic = solver_.step_count() % kEnergyInterval == 0;
+  if (periodic || finished()) energy = solver_.energy().total();
+  if (periodic) baselines_.highest_energy = std::max(baselines_.highest_energy, *energy);
+
+  const StepFacts now = facts(energy);
+  if (auto broken = first_breach(failing_guards(), limits_, now)) {
+    failed_ = true;
+    throw NumericalFailure(*std::move(broken));
+  }
+  note_warnings(now);
+  sample();
+}
+
+std::optional<Diagnosis> Simulation::violation() const {
+  return first_breach(failing_guards(), limits_, facts(solver_.energy().total()));
+}
+
+Checkpoint Simulation::checkpoint() const {
+  if (failed_) throw std::logic_error("a simulation that failed is not kept in a checkpoint");
+  Checkpoint kept;
+  kept.scene_hash = scene_hash_;
+  kept.build = build_id();
+  kept.simd_target = solver_.simd_target();
+  kept.bit_exact = bit_exact_;
+  kept.integrator = scene_.method.integrator;
+  kept.solver = solver_.state();
+  kept.series = series_;
+  kept.guards = baselines_;
+  kept.next_frame = next_frame_;
+  return kept;
+}
+
+std::optional<std::uint64_t> Simulation::due_frame() const {
+  if (!scene_.frames || !is_due(solver_.time(), scene_.frames->interval, next_frame_)) return {};
+  return next_frame_;
+}
+
+void Simulation::frame_written() {
+  next_frame_ = next_index_after(solver_.time(), scene_.frames->interval, next_frame_);
+}
+
+std::vector<Diagnosis> Simulation::take_warnings() { return std::exchange(warnings_, {}); }
+
+void Simulation::count_retired() {
+  const std::vector<Retired>& retired = solver_.retired();
+  for (; retired_counted_ < retired.size(); ++retired_counted_) {
+    ++(retired[retired_counted_].cause == RetireCause::leaked ? leaked_ : overtopped_);
+  }
+}
+
+void Simulation::sample() {
+  const auto start = std::chrono::steady_clock::now();
+  sensors_.sample(solver_, series_);
+  sample_seconds_ += seconds_since(start);
+}
+
+void Simulation::note_warnings(const StepFacts& facts) {
+  for (const Guard& guard : warning_guards()) {
+    if (std::find(warned_.begin(), warned_.end(), guard.reason) != warned_.end()) continue;
+    if (auto warning = first_breach({&guard, 1}, limits_, facts)) {
+      warned_.emplace_back(guard.reason);
+      warnings_.push_back(*std::move(warning));
+    }
+  }
+}
+
+StepFacts Simulation::facts(std::optional<double> energy) const {
+  StepFacts now;
+  now.step = solver_.step_count();
+  now.time = solver_.time();
+  now.time_step = solver_.time_step();
+  now.extremes = solver_.extremes();
+  now.leaked = leaked_;
+  now.initial_particles = initial_particles();
+  now.energy = energy;
+  now.baselines = baselines_;
+  now.offending_particle = [this] { return solver_.offending_particle_id(); };
+  return now;
+}
+
+std::size_t Simulation::initial_particles() const {
+  return static_cast<std::size_t>(
+      std::llround(baselines_.initial_mass / scene_.method.particle_mass()));
+}
+
+}  // namespace sluice
