@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "engine/scene/parse.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/sph/particles.hpp"
 

@@ -1,0 +1,29 @@
+#include "engine/scene/canonical.hpp"
+
+#include "engine/scene/describe.hpp"
+#include "engine/scene/json_text.hpp"
+#include "engine/scene/writer.hpp"
+
+namespace sluice {
+namespace {
+
+nlohmann::json to_json(const Scene& scene) {
+  Document document(scene);
+  Writer writer;
+  describe(writer, document);
+  return writer.object();
+}
+
+}  // namespace
+
+std::string canonical_text(const Scene& scene) { return write_json(to_json(scene)); }
+
+std::string identity_text(const Scene& scene) {
+  nlohmann::json object = to_json(scene);
+  for (const char* key : {"name", "description", "end_time"}) object.erase(key);
+  return write_json(object);
+}
+
+std::string_view to_string(SensorKind kind) { return word_for(kSensorWords, kind); }
+
+}  // namespace sluice

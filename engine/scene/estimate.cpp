@@ -1,0 +1,66 @@
+#include "engine/scene/estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/document.hpp"
+#include "engine/scene/geometry.hpp"
+#include "engine/scene/walls.hpp"
+#include "engine/scene/work.hpp"
+#include "engine/sph/particles.hpp"
+
+namespace sluice {
+namespace {
+
+// State, sorted copies, single-precision mirrors and sums of one particle, bytes.
+constexpr std::uint64_t kFluidBytes = 250;
+constexpr std::uint64_t kWallBytes = 100;
+// time, duration, value and weight of one sample, bytes.
+constexpr std::uint64_t kSampleBytes = 32;
+// Position, velocity, density and id of one particle in a snapshot, bytes.
+constexpr std::uint64_t kFrameBytes = 48;
+constexpr std::uint64_t kCheckpoints = 3;
+
+std::uint64_t checkpoint_bytes_per_particle(Integrator integrator) {
+  std::uint64_t fields = 0;
+  for (const Field& field : kFields) {
+    if (field.role == Role::state && carries(integrator, field)) ++fields;
+  }
+  return fields * sizeof(double);
+}
+
+std::uint64_t whole(double value) { return static_cast<std::uint64_t>(std::ceil(value)); }
+
+}  // namespace
+
+Estimate estimate(const Scene& scene) {
+  Estimate e;
+  e.fluid_particles = whole(count_fluid_cells(scene));
+  e.wall_particles = whole(count_wall_cells(scene));
+  e.time_step = expected_time_step(scene);
+  e.steps = whole(scene.end_time / e.time_step);
+  e.samples = whole(count_samples(scene));
+  e.frames = whole(count_frames(scene));
+  e.memory_bytes =
+      e.fluid_particles * kFluidBytes + e.wall_particles * kWallBytes + e.samples * kSampleBytes;
+  e.disk_bytes =
+      kCheckpoints * (e.fluid_particles * checkpoint_bytes_per_particle(scene.method.integrator) +
+                      e.samples * kSampleBytes) +
+      e.samples * kSampleBytes + e.frames * e.fluid_particles * kFrameBytes;
+  return e;
+}
+
+std::string estimate_json(const Estimate& e) {
+  return nlohmann::ordered_json{{"fluid_particles", e.fluid_particles},
+                                {"wall_particles", e.wall_particles},
+                                {"time_step", e.time_step},
+                                {"steps", e.steps},
+                                {"samples", e.samples},
+                                {"frames", e.frames},
+                                {"memory_bytes", e.memory_bytes},
+                                {"disk_bytes", e.disk_bytes}}
+      .dump();
+}
+
+}  // namespace sluice

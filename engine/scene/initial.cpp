@@ -1,0 +1,116 @@
+#include "engine/scene/initial.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "engine/scene/cells.hpp"
+#include "engine/scene/geometry.hpp"
+#include "engine/scene/walls.hpp"
+
+namespace sluice {
+namespace {
+
+/// Density above rho_0 at a point of a region: eq. 3 with the pressure of water at rest.
+class InitialDensity {
+ public:
+  InitialDensity(const FluidRegion& region, const Method& method)
+      : rest_(region.pressure == InitialPressure::zero),
+        method_(method),
+        // f . x is smallest at the region's highest point against f.
+        top_(-farthest_along(region.shape, -method.gravity)) {}
+
+  [[nodiscard]] double excess(const Vec& point) const {
+    if (rest_) return 0.0;
+    const double pressure = method_.reference_density * (method_.gravity.dot(point) - top_);
+    return pressure / (method_.sound_speed * method_.sound_speed);
+  }
+
+ private:
+  bool rest_;
+  const Method& method_;
+  double top_;
+};
+
+/// Obstacles with their bounding boxes, widened by half a spacing.
+class Displacement {
+ public:
+  Displacement(const std::vector<Shape>& obstacles, double spacing)
+      // A particle half a spacing above a flat face stays, whatever rounding says.
+      : gap_((0.5 - 1e-6) * spacing) {
+    for (const Shape& shape : obstacles) {
+      Box box = bounds(shape);
+      box.min.array() -= spacing;
+      box.max.array() += spacing;
+      bodies_.push_back({&shape, box});
+    }
+  }
+
+  [[nodiscard]] bool takes(const Vec& point) const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+      return body.box.contains(point) && signed_distance(*body.shape, point) < gap_;
+    });
+  }
+
+ private:
+  struct Body {
+    const Shape* shape;
+    Box box;
+  };
+  double gap_;
+  std::vector<Body> bodies_;
+};
+
+void require_apart(const std::vector<CellSet>& earlier, const Vec& point, std::size_t region) {
+  for (std::size_t other = 0; other < earlier.size(); ++other) {
+    if (!earlier[other].covers(point)) continue;
+    throw SceneError({fmt::format("/fluid/{}", region),
+                      fmt::format("overlaps /fluid/{} at ({:.6g}, {:.6g}) m: particles would lie "
+                                  "closer than half a spacing; move or shrink one of the two",
+                                  other, point.x(), point.y())});
+  }
+}
+
+void append(Particles& particles, const Vec& point, const Vec& velocity, double excess) {
+  particles.id.push_back(static_cast<double>(particles.size()));
+  particles.x.push_back(point.x());
+  particles.y.push_back(point.y());
+  particles.vx.push_back(velocity.x());
+  particles.vy.push_back(velocity.y());
+  particles.density_excess.push_back(excess);
+}
+
+void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
+  std::vector<CellSet> earlier;
+  for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
+    const FluidRegion& region = scene.fluid[i];
+    const InitialDensity density(region, scene.method);
+    const std::size_t before = particles.size();
+    CellSet cells(region.shape, scene.method.spacing, CellFit::exact_spacing);
+    cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+      if (solid.takes(point)) return;
+      require_apart(earlier, point, i);
+      append(particles, point, region.velocity, density.excess(point));
+    });
+    if (particles.size() == before) {
+      throw SceneError({fmt::format("/fluid/{}", i),
+                        "no particle lies in this region: it is narrower than the lattice or "
+                        "filled by obstacles; enlarge it or lower /resolution/spacing"});
+    }
+    earlier.push_back(std::move(cells));
+  }
+}
+
+}  // namespace
+
+InitialParticles create_particles(const Scene& scene) {
+  InitialParticles result;
+  fill(scene, Displacement(scene.obstacles, scene.method.spacing), result.state.particles);
+  if (scene.tank) result.walls = tank_walls(*scene.tank, scene.method);
+  const std::vector<Vec> solid = obstacle_walls(scene.obstacles, scene.method);
+  result.walls.insert(result.walls.end(), solid.begin(), solid.end());
+  return result;
+}
+
+}  // namespace sluice

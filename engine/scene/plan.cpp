@@ -1,0 +1,134 @@
+#include "engine/scene/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "engine/scene/vocabulary.hpp"
+#include "engine/sph/particles.hpp"
+
+namespace sluice {
+namespace {
+
+/// Two lists, one of which an item goes to with its reason.
+struct Lists {
+  std::vector<PlanItem>& in;
+  std::vector<PlanItem>& out;
+
+  void always(std::string_view name, std::string_view description) const {
+    in.push_back({std::string(name), std::string(description), "always"});
+  }
+  void run(std::string_view name, std::string_view description, std::string reason) const {
+    in.push_back({std::string(name), std::string(description), std::move(reason)});
+  }
+  void leave_out(std::string_view name, std::string_view description, std::string reason) const {
+    out.push_back({std::string(name), std::string(description), std::move(reason)});
+  }
+  void either(bool asked, std::string_view name, std::string_view description,
+              std::string_view key) const {
+    if (asked) {
+      run(name, description, fmt::format("key {}", key));
+    } else {
+      leave_out(name, description, fmt::format("no key {}", key));
+    }
+  }
+};
+
+bool has_walls(const Scene& scene) { return scene.tank || !scene.obstacles.empty(); }
+
+void plan_walls(const Scene& scene, const Lists& passes) {
+  const std::string about = fmt::format("wall pressure of eq. 9, {}",
+                                        word_for(kWallPressureWords, scene.method.wall_pressure));
+  constexpr std::string_view kFriction = "viscosity of eq. 8 against walls";
+  if (!has_walls(scene)) {
+    passes.leave_out("wall_pressure", about, "no key tank and no key obstacles");
+    passes.leave_out("wall_friction", kFriction, "no walls to rub on");
+    return;
+  }
+  passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
+  passes.either(scene.method.wall_friction.has_value(), "wall_friction", kFriction,
+                "numerics.wall_friction");
+}
+
+void plan_passes(const Scene& scene, const Lists& passes) {
+  const Method& m = scene.method;
+  passes.always("sort", "particles into rows of cells, when one has moved far enough");
+  passes.always("continuity", "density rate of eq. 4");
+  passes.always("momentum", "pressure part of eq. 5");
+  const std::string diffusion =
+      m.diffusion ? fmt::format("eq. 7, {}, delta {}", word_for(kDiffusionWords, m.diffusion->kind),
+                                m.diffusion->delta)
+                  : "eq. 7";
+  passes.either(m.diffusion.has_value(), "density_diffusion", diffusion,
+                "numerics.density_diffusion");
+  passes.either(m.viscosity.has_value(), "artificial_viscosity", "eq. 8 between fluid particles",
+                "numerics.artificial_viscosity");
+  plan_walls(scene, passes);
+  passes.either(!m.gravity.isZero(0.0), "gravity", "body acceleration of eq. 5", "gravity");
+  passes.run("update", "time step of eq. 18 and integration",
+             fmt::format("numerics.integrator {}", word_for(kIntegratorWords, m.integrator)));
+  const std::string reinitialisation =
+      m.reinitialisation ? fmt::format("eq. 10, every {} steps", m.reinitialisation->interval)
+                         : "eq. 10";
+  passes.either(m.reinitialisation.has_value(), "reinitialisation", reinitialisation,
+                "numerics.reinitialisation");
+  passes.either(!scene.sensors.empty(), "sample", fmt::format("{} sensors", scene.sensors.size()),
+                "sensors");
+}
+
+void plan_fields(const Scene& scene, const Lists& fields) {
+  const Integrator integrator = scene.method.integrator;
+  for (const Field& field : kFields) {
+    const std::string about = fmt::format("{}, {}", field.description, field.unit);
+    if (field.carried_by == CarriedBy::every_scheme) {
+      fields.always(field.name, about);
+      continue;
+    }
+    const std::string reason =
+        fmt::format("numerics.integrator {}", word_for(kIntegratorWords, integrator));
+    if (carries(integrator, field)) {
+      fields.run(field.name, about, reason);
+    } else {
+      fields.leave_out(field.name, about, reason + " does not carry it");
+    }
+  }
+}
+
+void plan_files(const Scene& scene, const Lists& files) {
+  files.always("checkpoints", "all that is needed to go on");
+  files.either(!scene.sensors.empty(), "series", "samples of the sensors", "sensors");
+  files.either(scene.frames.has_value(), "frames", "snapshots of all particles", "output.frames");
+  files.either(scene.scales.has_value(), "dimensionless results", "eqs. 19-22, when read",
+               "scales");
+}
+
+nlohmann::ordered_json to_json(const std::vector<PlanItem>& items) {
+  auto all = nlohmann::ordered_json::array();
+  for (const PlanItem& item : items) {
+    all.push_back(
+        {{"name", item.name}, {"description", item.description}, {"reason", item.reason}});
+  }
+  return all;
+}
+
+}  // namespace
+
+Plan plan(const Scene& scene) {
+  Plan p;
+  plan_passes(scene, {p.passes, p.passes_left_out});
+  plan_fields(scene, {p.fields, p.fields_left_out});
+  plan_files(scene, {p.files, p.files_left_out});
+  return p;
+}
+
+std::string plan_json(const Plan& p) {
+  return nlohmann::ordered_json{
+      {"passes", to_json(p.passes)}, {"passes_left_out", to_json(p.passes_left_out)},
+      {"fields", to_json(p.fields)}, {"fields_left_out", to_json(p.fields_left_out)},
+      {"files", to_json(p.files)},   {"files_left_out", to_json(p.files_left_out)}}
+      .dump();
+}
+
+}  // namespace sluice

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "engine/scene/scene.hpp"
+#include "engine/scene/spec.hpp"
+
+namespace sluice {
+
+/// The alternatives of Shape, in its order.
+enum class ShapeKind { rectangle, circle, ellipse, polygon };
+
+[[nodiscard]] inline ShapeKind kind_of(const Shape& shape) {
+  return static_cast<ShapeKind>(shape.index());
+}
+[[nodiscard]] inline Shape shape_of(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::rectangle:
+      return Rectangle{};
+    case ShapeKind::circle:
+      return Circle{};
+    case ShapeKind::ellipse:
+      return Ellipse{};
+    case ShapeKind::polygon:
+      return Polygon{};
+  }
+  return Rectangle{};
+}
+
+// The words that scenes write for each enumeration.
+inline constexpr Words<ShapeKind, 4> kShapeWords{{
+    {"rectangle", ShapeKind::rectangle, "axis-aligned"},
+    {"circle", ShapeKind::circle, ""},
+    {"ellipse", ShapeKind::ellipse, "axis-aligned"},
+    {"polygon", ShapeKind::polygon, "without self-intersections"},
+}};
+inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
+    {"hydrostatic", InitialPressure::hydrostatic, "that of water at rest below the region's top"},
+    {"zero", InitialPressure::zero, "none"},
+}};
+inline constexpr Words<KernelKind, 2> kKernelWords{{
+    {"truncated_gaussian", KernelKind::truncated_gaussian, "support 3h"},
+    {"wendland_c2", KernelKind::wendland_c2, "support 2h"},
+}};
+inline constexpr Words<Integrator, 2> kIntegratorWords{{
+    {"modified_leap_frog", Integrator::modified_leap_frog, "the paper's; steps to about C = 0.5"},
+    {"kick_drift_kick", Integrator::kick_drift_kick, "stable at larger steps, to about C = 1"},
+}};
+inline constexpr Words<Precision, 2> kPrecisionWords{{
+    {"mixed", Precision::mixed, "sums in single, state in double precision"},
+    {"double", Precision::double_precision, "everything in double precision"},
+}};
+inline constexpr Words<DiffusionKind, 2> kDiffusionWords{{
+    {"molteni_colagrossi", DiffusionKind::molteni_colagrossi, "of the density"},
+    {"fourtakas", DiffusionKind::fourtakas, "of the density less its hydrostatic part"},
+}};
+inline constexpr Words<WallPressure, 2> kWallPressureWords{{
+    {"extrapolated", WallPressure::extrapolated, "may be negative"},
+    {"clamped", WallPressure::clamped, "not below zero: keeps particles from the wall's far side"},
+}};
+inline constexpr Words<SensorKind, 6> kSensorWords{{
+    {"pressure", SensorKind::pressure, "pressure at a point"},
+    {"surface_height", SensorKind::surface_height, "height of the free surface at x"},
+    {"surge_front", SensorKind::surge_front, "largest x that the fluid has reached"},
+    {"column_height", SensorKind::column_height, "height of the fluid at the left wall"},
+    {"energy", SensorKind::energy, "kinetic, potential and internal"},
+    {"arrival", SensorKind::arrival, "distance of the nearest fluid to a point"},
+}};
+
+}  // namespace sluice
