@@ -15,7 +15,7 @@ namespace {
 // A pair list serves until a particle has used up its reach. A particle's reach grows with its
 // speed, so that all use theirs up at about the same time and a few fast ones do not force a sort
 // at each step.
-constexpr double kListLifetime = 2.0;  // h/c
+constexpr double kListLifetime = 6.0;  // h/c
 constexpr double kReachMargin = 1.3;   // of the distance at present speed in that time
 constexpr double kLeastReach = 0.03;   // h
 constexpr double kMostReach = 1.5;     // h
@@ -47,6 +47,7 @@ class Engine final : public Solver::Impl {
 
   void step() override;
   [[nodiscard]] std::vector<double> wall_pressures() const override;
+  [[nodiscard]] double pair_lanes() const override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 
  private:
@@ -340,21 +341,22 @@ void Engine<T>::retire(const std::vector<std::uint32_t>& slots) {
 
 template <typename T>
 void Engine<T>::reorder(const Layout& next) {
-  const Vec center = (method.domain.min + method.domain.max) / 2.0;
   for (const Field& field : kFields) {
     if (!carries(method.integrator, field)) continue;
     std::vector<double>& values = particles.*field.member;
     double empty = 0.0;
     if (field.name == "id") empty = -1.0;
     if (field.name == "reach") empty = kNoReach;
-    if (field.name == "x" || field.name == "x_sorted") empty = center.x();
-    if (field.name == "y" || field.name == "y_sorted") empty = center.y();
+    // Far from everything, and from each other.
+    const bool place = field.unit == "m" && field.name != "reach";
+    const double apart = place ? 1e8 * method.smoothing_length : 0.0;
     std::vector<double> moved(next.slots());
     constexpr std::size_t kBlock = kCluster * kChunk;
     team_.run((next.slots() + kBlock - 1) / kBlock, [&](std::size_t block) {
       const std::size_t end = std::min(next.slots(), kBlock * (block + 1));
       for (std::size_t s = kBlock * block; s < end; ++s) {
-        moved[s] = next.source[s] == Layout::kEmpty ? empty : values[next.source[s]];
+        moved[s] = next.source[s] != Layout::kEmpty ? values[next.source[s]]
+                                                    : empty + apart * static_cast<double>(s + 1);
       }
     });
     values = std::move(moved);
@@ -646,6 +648,14 @@ std::vector<double> Engine<T>::wall_pressures() const {
     pressures[wall_layout_.source[s]] = static_cast<double>(walls_.excess[s]) * scale;
   }
   return pressures;
+}
+
+template <typename T>
+double Engine<T>::pair_lanes() const {
+  std::size_t entries = 0;
+  for (const PairList::Chunk& chunk : fluid_to_fluid_.chunks) entries += chunk.entries.size();
+  const auto pairs = static_cast<double>(kCluster * kCluster * entries);
+  return pairs / static_cast<double>(std::max<std::size_t>(particle_count, 1));
 }
 
 template <typename T>

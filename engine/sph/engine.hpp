@@ -37,6 +37,7 @@ class Solver::Impl {
   std::uint64_t sort_count = 0;
 
   [[nodiscard]] virtual std::vector<double> wall_pressures() const = 0;
+  [[nodiscard]] virtual double pair_lanes() const = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
 };
 

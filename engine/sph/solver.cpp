@@ -43,6 +43,7 @@ std::string_view Solver::simd_target() const { return impl_->simd_target; }
 int Solver::threads() const { return impl_->execution.threads; }
 const std::array<double, kPassCount>& Solver::pass_seconds() const { return impl_->pass_seconds; }
 std::uint64_t Solver::sort_count() const { return impl_->sort_count; }
+double Solver::pair_lanes() const { return impl_->pair_lanes(); }
 std::size_t Solver::memory_bytes() const { return impl_->memory_bytes(); }
 std::vector<double> Solver::wall_pressures() const { return impl_->wall_pressures(); }
 

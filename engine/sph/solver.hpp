@@ -107,6 +107,9 @@ class Solver {
   /// Seconds of wall time spent in each pass since construction.
   [[nodiscard]] const std::array<double, kPassCount>& pass_seconds() const;
   [[nodiscard]] std::uint64_t sort_count() const;
+  /// Vector lanes that a pair sum over the fluid spends per particle; about 28 of them hold a
+  /// neighbour (Gaussian).
+  [[nodiscard]] double pair_lanes() const;
   [[nodiscard]] std::size_t memory_bytes() const;
 
   class Impl;

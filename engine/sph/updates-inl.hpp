@@ -11,6 +11,8 @@
 
 #include <hwy/highway.h>
 
+#include <type_traits>
+
 #include "engine/sph/updates.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -85,9 +87,7 @@ void write_pairs(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out)
                             const double* HWY_RESTRICT origin) HWY_ATTR {
     for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
       for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
-        // Empty slots lie far from everything and from each other.
-        to[s] = p.reach[s] < kNoReach ? static_cast<T>((x[s] - origin[c]) * k.inverse_length)
-                                      : static_cast<T>(1e8 * static_cast<double>(s + 1));
+        to[s] = static_cast<T>((x[s] - origin[c]) * k.inverse_length);
       }
     }
   };
@@ -174,16 +174,26 @@ inline void measure(const ParticleSpan& p, const Box& domain, double ahead, Moti
 
 template <typename T>
 void measure_rates(const ParticleSpan& p, const Rates<T>& rates, Motion& out) {
-  double largest[kCluster] = {};
-  for (std::size_t c = p.begin; c < p.end; c += kCluster) {
-    for (std::size_t l = 0; l < kCluster; ++l) {
-      const double ax = acceleration(rates, rates.x_sum, rates.gravity.x(), c + l);
-      const double ay = acceleration(rates, rates.y_sum, rates.gravity.y(), c + l);
-      const double sq = p.reach[c + l] < kNoReach ? ax * ax + ay * ay : 0.0;
-      largest[l] = sq > largest[l] ? sq : largest[l];
+  using D = hn::ScalableTag<double>;
+  const D d;
+  const hn::Rebind<T, D> d_sum;
+  const auto rate = [&](const T* sum, double gravity, std::size_t s) HWY_ATTR {
+    const auto value = hn::LoadU(d_sum, sum + s);
+    const auto scale = hn::Set(d, rates.acceleration_scale);
+    if constexpr (std::is_same_v<T, double>) {
+      return scale * value + hn::Set(d, gravity);
+    } else {
+      return scale * hn::PromoteTo(d, value) + hn::Set(d, gravity);
     }
+  };
+  hn::Vec<D> largest = hn::Zero(d);
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const auto used = hn::LoadU(d, p.reach + s) < hn::Set(d, kNoReach);
+    const auto ax = rate(rates.x_sum, rates.gravity.x(), s);
+    const auto ay = rate(rates.y_sum, rates.gravity.y(), s);
+    largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
   }
-  out.acceleration_sq = std::max({largest[0], largest[1], largest[2], largest[3]});
+  out.acceleration_sq = hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
 template <typename T>
