@@ -1,5 +1,6 @@
 #include "engine/run/sampling.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -30,6 +31,14 @@ class PressureSampler final : public Sampler {
   Vec position_;
   double smoothing_length_;
 };
+
+/// `x` moved half a support away from the tank's walls. On the wall itself half of the kernel lies
+/// outside the fluid, and no height is half full; here 0.98 of it lies inside.
+double clear_of_walls(double x, const Scene& scene) {
+  if (!scene.tank) return x;
+  const double margin = std::min(0.5 * scene.method.support(), 0.5 * scene.tank->width);
+  return std::clamp(x, margin, scene.tank->width - margin);
+}
 
 /// Height of the surface over a given x, m: h of eq. 21. Also the column height, at the column's
 /// wall.
@@ -115,7 +124,8 @@ std::string_view kind_name(SensorKind kind) {
 
 }  // namespace
 
-std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Method& method) {
+std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene) {
+  const Method& method = scene.method;
   switch (sensor.kind) {
     case SensorKind::pressure:
       return std::make_unique<PressureSampler>(sensor.position, sensor.smoothing_length > 0.0
@@ -123,7 +133,7 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Method& method
                                                                     : method.smoothing_length);
     case SensorKind::surface_height:
     case SensorKind::column_height:
-      return std::make_unique<SurfaceHeightSampler>(sensor.position.x());
+      return std::make_unique<SurfaceHeightSampler>(clear_of_walls(sensor.position.x(), scene));
     case SensorKind::surge_front:
       return std::make_unique<SurgeFrontSampler>();
     case SensorKind::energy:
@@ -134,9 +144,8 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Method& method
   throw std::logic_error("unknown sensor kind");
 }
 
-SensorArray::SensorArray(const std::vector<Sensor>& sensors, const Method& method)
-    : sensors_(sensors) {
-  for (const Sensor& sensor : sensors_) samplers_.push_back(make_sampler(sensor, method));
+SensorArray::SensorArray(const Scene& scene) : sensors_(scene.sensors) {
+  for (const Sensor& sensor : sensors_) samplers_.push_back(make_sampler(sensor, scene));
 }
 
 std::vector<Series> SensorArray::empty_series() const {

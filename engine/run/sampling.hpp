@@ -23,13 +23,13 @@ class Sampler {
   [[nodiscard]] virtual bool is_event() const { return false; }
 };
 
-[[nodiscard]] std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Method& method);
+[[nodiscard]] std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene);
 
 /// All sensors of a scene with their samplers. The samples and the schedule's state live in the
 /// `Series`, which go into the checkpoint; a SensorArray itself has nothing to save.
 class SensorArray {
  public:
-  SensorArray(const std::vector<Sensor>& sensors, const Method& method);
+  explicit SensorArray(const Scene& scene);
 
   /// One empty series per sensor, in the scene's order.
   [[nodiscard]] std::vector<Series> empty_series() const;

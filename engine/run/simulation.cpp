@@ -55,7 +55,7 @@ Simulation::Simulation(Scene scene, const Execution& execution)
     : scene_(std::move(scene)),
       scene_hash_(scene_hash(identity_text(scene_))),
       limits_(GuardLimits::for_method(scene_.method)),
-      sensors_(scene_.sensors, scene_.method),
+      sensors_(scene_),
       solver_(start_solver(scene_, execution)),
       series_(sensors_.empty_series()) {
   const Energy energy = solver_.energy();
@@ -68,7 +68,7 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
     : scene_(std::move(scene)),
       scene_hash_(scene_hash(identity_text(scene_))),
       limits_(GuardLimits::for_method(scene_.method)),
-      sensors_(scene_.sensors, scene_.method),
+      sensors_(scene_),
       solver_(resume_solver(scene_, execution, checkpoint.solver)),
       series_(std::move(checkpoint.series)),
       baselines_(checkpoint.guards),
