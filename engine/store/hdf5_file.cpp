@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <string_view>
@@ -42,6 +44,7 @@ class Handle {
     }
   }
   [[nodiscard]] hid_t get() const { return id_; }
+  [[nodiscard]] hid_t release() { return std::exchange(id_, H5I_INVALID_HID); }
 
  private:
   hid_t id_ = H5I_INVALID_HID;
@@ -201,6 +204,46 @@ std::string unique_name() {
   return fmt::format("memory-{}", number.fetch_add(1));
 }
 
+/// The memory of a file in memory, kept beyond the file's closing. H5Fget_file_image of HDF5 1.10.8
+/// would give the file as it is while open, with a flag cleared and so a checksum that is wrong.
+class FileMemory {
+ public:
+  FileMemory() = default;
+  FileMemory(const FileMemory&) = delete;
+  FileMemory& operator=(const FileMemory&) = delete;
+  ~FileMemory() { std::free(bytes_); }
+
+  [[nodiscard]] H5FD_file_image_callbacks_t callbacks() {
+    return {allocate, copy, resize, keep, share, leave, this};
+  }
+  [[nodiscard]] Bytes first(std::size_t count) const {
+    const auto* bytes = static_cast<const std::byte*>(bytes_);
+    return {bytes, bytes + count};
+  }
+
+ private:
+  using Operation = H5FD_file_image_op_t;
+
+  static void* allocate(std::size_t size, Operation, void* self) {
+    return resize(nullptr, size, H5FD_FILE_IMAGE_OP_FILE_RESIZE, self);
+  }
+  static void* copy(void* to, const void* from, std::size_t size, Operation, void*) {
+    return std::memcpy(to, from, size);
+  }
+  static void* resize(void* bytes, std::size_t size, Operation, void* self) {
+    void* resized = std::realloc(bytes, size);
+    if (resized != nullptr) {
+      static_cast<FileMemory*>(self)->bytes_ = resized;
+    }
+    return resized;
+  }
+  static herr_t keep(void*, Operation, void*) { return 0; }
+  static void* share(void* self) { return self; }
+  static herr_t leave(void*) { return 0; }
+
+  void* bytes_ = nullptr;
+};
+
 }  // namespace
 
 class Hdf5Writer::Impl {
@@ -212,7 +255,9 @@ class Hdf5Writer::Impl {
     const auto growth = static_cast<std::size_t>(std::max(expected_bytes, kSmallestGrowth));
     check_.require(H5Pset_fapl_core(access.get(), growth, false) >= 0, "set up", "memory");
     check_.require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST) >= 0,
-                   "set", "version");
+                   "set", "the version of the layout");
+    H5FD_file_image_callbacks_t callbacks = memory_.callbacks();
+    check_.require(H5Pset_file_image_callbacks(access.get(), &callbacks) >= 0, "set up", "memory");
     const Handle creation = properties(H5P_FILE_CREATE);
     file_ =
         check_.own(H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()),
@@ -282,11 +327,8 @@ class Hdf5Writer::Impl {
     check_.require(H5Fflush(file(), H5F_SCOPE_LOCAL) >= 0, "complete", "the file in memory");
     const ssize_t size = H5Fget_file_image(file(), nullptr, 0);
     check_.require(size > 0, "size", "the file in memory");
-    Bytes bytes(static_cast<std::size_t>(size));
-    check_.require(H5Fget_file_image(file(), bytes.data(), bytes.size()) == size, "copy",
-                   "the file in memory");
-    file_ = Handle();
-    return bytes;
+    check_.require(H5Fclose(file_.release()) >= 0, "close", "the file in memory");
+    return memory_.first(static_cast<std::size_t>(size));
   }
 
  private:
@@ -326,6 +368,7 @@ class Hdf5Writer::Impl {
   }
 
   Checker check_{StorageFault::io};
+  FileMemory memory_;
   Handle file_;
 };
 

@@ -145,7 +145,7 @@ void require_writable(const fs::path& folder) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error && !fs::is_directory(folder)) {
+  if (std::error_code ignored; error && !fs::is_directory(folder, ignored)) {
     throw system_error("cannot make the folder", folder, error.value());
   }
 }
@@ -217,8 +217,8 @@ JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
   make_folder(folder);
   require_writable(folder);
   // Before the lock, so that no lock file is left in a folder of someone else.
-  const bool cut_short = !holds_job(folder) && fs::exists(JobPaths(folder).lock());
-  if (!cut_short) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(JobPaths(folder).lock(), ignored))) {
     require_free_folder(folder);
   }
   JobFolder job(JobPaths(folder), system);

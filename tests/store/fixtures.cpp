@@ -1,0 +1,189 @@
+#include "tests/store/fixtures.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+namespace sluice::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Limits = std::numeric_limits<double>;
+
+bool same(const Retired& a, const Retired& b) {
+  return same_bits(a.id, b.id) && a.cause == b.cause && a.step == b.step &&
+         same_bits(a.time, b.time) && same_bits(a.x, b.x) && same_bits(a.y, b.y);
+}
+
+template <class List, class Same>
+bool same_lists(const List& a, const List& b, const Same& same_elements) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_elements);
+}
+
+/// Finite doubles of every kind, then plain ones that differ by field and index.
+std::vector<double> awkward_values(std::size_t count, double first) {
+  std::vector<double> values{-0.0, Limits::denorm_min(), -Limits::max(), Limits::min() / 3, 0.1};
+  for (std::size_t i = values.size(); i < count; ++i) {
+    values.push_back(first + static_cast<double>(i) / 7.0);
+  }
+  values.resize(count);
+  return values;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "sluice-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw std::runtime_error("cannot make a temporary folder");
+  }
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::vector<Series> make_series_list() {
+  const double dry = Limits::quiet_NaN();
+  return {
+      {"P1",
+       "pressure",
+       {{"value", "Pa"}},
+       {0.0, 0.1, 0.3},
+       {0.0, 0.1, 0.2},
+       {dry, -0.0, 1e-310},
+       {0.0, 0.5, 1.0},
+       7},
+      {"energy",
+       "energy",
+       {{"kinetic", "J/m"}, {"potential", "J/m"}, {"internal", "J/m"}},
+       {0.0, 0.2},
+       {0.0, 0.2},
+       {0.0, 1.0, 2.0, 0.5, 0.25, 0.125},
+       {1.0, 1.0},
+       2},
+      {"späte Ankunft / 1", "arrival", {{"value", "s"}}, {}, {}, {}, {}, 0},
+  };
+}
+
+Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator integrator) {
+  Checkpoint checkpoint;
+  checkpoint.scene_hash = "00112233445566778899aabbccddeeff";
+  checkpoint.build = "0.1.0";
+  checkpoint.simd_target = "AVX2";
+  checkpoint.bit_exact = false;
+  checkpoint.integrator = integrator;
+  checkpoint.solver.step = step;
+  checkpoint.solver.time = 1e-4 * static_cast<double>(step);
+  checkpoint.solver.time_step = 1e-4;
+  for (std::size_t i = 0; i < kFields.size(); ++i) {
+    if (carries(integrator, kFields[i])) {
+      checkpoint.solver.particles.*kFields[i].member =
+          awkward_values(count, 100.0 * static_cast<double>(i));
+    }
+  }
+  checkpoint.solver.retired = {{3.0, RetireCause::overtopped, 11, 0.011, 1.5, 0.61},
+                               {5.0, RetireCause::leaked, 12, 0.012, -0.1, -0.0}};
+  checkpoint.series = make_series_list();
+  checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0};
+  checkpoint.next_frame = 4;
+  return checkpoint;
+}
+
+Frame make_test_frame(std::size_t count) {
+  Frame frame{17, 0.25, {}, {}, {}, {}, {}, {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = static_cast<float>(i) / 3.0F;
+    frame.x.push_back(value);
+    frame.y.push_back(-value);
+    frame.vx.push_back(value * 1e-42F);  // denormal in single precision
+    frame.vy.push_back(-0.0F);
+    frame.pressure.push_back(value * 1e30F);
+    frame.id.push_back(count - i);
+  }
+  return frame;
+}
+
+int in_child(const std::function<int()>& action) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int result = 99;  // An exception must not go on into the parent's tests
+    try {
+      result = action();
+    } catch (...) {
+    }
+    ::_exit(result);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return same_lists(a, b, [](double x, double y) { return same_bits(x, y); });
+}
+
+bool same_bits(const Series& a, const Series& b) {
+  const auto same_columns = [](const Series::Column& x, const Series::Column& y) {
+    return x.name == y.name && x.unit == y.unit;
+  };
+  return a.name == b.name && a.kind == b.kind && same_lists(a.columns, b.columns, same_columns) &&
+         same_bits(a.time, b.time) && same_bits(a.duration, b.duration) &&
+         same_bits(a.values, b.values) && same_bits(a.weight, b.weight) &&
+         a.next_index == b.next_index;
+}
+
+bool same_bits(const std::vector<Series>& a, const std::vector<Series>& b) {
+  return same_lists(a, b, [](const Series& x, const Series& y) { return same_bits(x, y); });
+}
+
+bool same_bits(const Checkpoint& a, const Checkpoint& b) {
+  const bool fields = std::all_of(kFields.begin(), kFields.end(), [&](const Field& field) {
+    return same_bits(a.solver.particles.*field.member, b.solver.particles.*field.member);
+  });
+  return fields && a.scene_hash == b.scene_hash && a.build == b.build &&
+         a.simd_target == b.simd_target && a.bit_exact == b.bit_exact &&
+         a.integrator == b.integrator && a.solver.step == b.solver.step &&
+         same_bits(a.solver.time, b.solver.time) &&
+         same_bits(a.solver.time_step, b.solver.time_step) &&
+         same_lists(a.solver.retired, b.solver.retired, same) && same_bits(a.series, b.series) &&
+         a.guards == b.guards && a.next_frame == b.next_frame;
+}
+
+Bytes read_bytes(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_bytes(const fs::path& path, ByteSpan bytes) {
+  fs::remove(path);  // Some file systems wait for the disk when a file is cut and written again
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace sluice::test
