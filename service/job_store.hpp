@@ -1,0 +1,124 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "service/job.hpp"
+
+namespace sluice {
+
+/// Thrown by JobStore.
+class JobStoreError : public std::runtime_error {
+ public:
+  enum class Fault {
+    not_found,   ///< no such job
+    conflict,    ///< the transition is not allowed in the job's state, or the attempt's token is
+                 ///< stale
+    key_reused,  ///< the Idempotency-Key came with another body before
+    full,        ///< the queue's limit
+    in_use,      ///< another service has this data folder
+    disk_full,
+    damaged,        ///< the integrity check failed
+    newer_version,  ///< the file was written by a newer program
+    io,
+  };
+  JobStoreError(Fault fault, const std::string& message)
+      : std::runtime_error(message), fault_(fault) {}
+  [[nodiscard]] Fault fault() const { return fault_; }
+
+ private:
+  Fault fault_;
+};
+
+/// What a transition changes beside the state. Absent members stay as they are.
+struct JobChange {
+  std::optional<std::string> reason;
+  std::optional<std::string> outcome;
+  std::optional<int> crashes;
+  std::optional<double> end_time;
+  std::string event_detail = "{}";  ///< JSON object for the event row
+};
+
+struct JobFilter {
+  std::optional<JobState> state;
+  std::optional<std::string> label;
+  std::string after;  ///< cursor: the id that the last page ended with; empty: from the newest
+  std::size_t limit = 50;
+};
+
+/// Job rows, events and idempotency keys in one SQLite file, DATA/jobs.sqlite. One connection,
+/// journal_mode=TRUNCATE, synchronous=EXTRA, STRICT tables, user_version migrations. What a call
+/// acknowledged survives a power cut. All calls may come from any thread; each write is one BEGIN
+/// IMMEDIATE transaction with its event row.
+class JobStore {
+ public:
+  /// Opens or creates; takes the lock of the data folder (in_use) and migrates. After an unclean
+  /// stop it runs the integrity check (damaged: says how to rebuild).
+  explicit JobStore(const std::filesystem::path& data);
+  ~JobStore();
+  JobStore(const JobStore&) = delete;
+  JobStore& operator=(const JobStore&) = delete;
+
+  /// A fresh id; ids sort by creation.
+  [[nodiscard]] std::string new_id();
+
+  struct Submitted {
+    Job job;
+    bool repeated = false;  ///< the key was known: this is the job that it made
+  };
+  /// Adds a queued job. `key` (may be empty) with `body_hash` makes repetition harmless, also at
+  /// the same instant: key_reused when the key came with another hash. `limit` queued jobs at most
+  /// (full).
+  Submitted submit(const Job& job, const std::string& key, const std::string& body_hash,
+                   std::size_t limit);
+  /// The job that a key made, before any work is done for it. Throws key_reused.
+  [[nodiscard]] std::optional<Job> find_by_key(const std::string& key,
+                                               const std::string& body_hash) const;
+
+  [[nodiscard]] std::optional<Job> find(const std::string& id) const;
+  /// Newest first.
+  [[nodiscard]] std::vector<Job> list(const JobFilter& filter) const;
+  [[nodiscard]] std::vector<std::pair<JobState, std::size_t>> count_by_state() const;
+
+  /// Claims the queued job with the highest priority, then age, that needs at most `threads`: one
+  /// UPDATE ... RETURNING, with a new token. Jobs in `except` are passed over.
+  std::optional<Job> claim(int threads, const std::vector<std::string>& except);
+
+  /// Applies the transition that the table gives for `action` in the job's state. `token` guards
+  /// actions of an attempt: conflict when it is not the running one's; empty for requests of users.
+  /// A pause or cancel of a running job only marks `pending_stop`. Idempotent for users: pausing a
+  /// paused job returns it unchanged.
+  Job apply(const std::string& id, JobAction action, const std::string& token,
+            const JobChange& change);
+  /// The last progress line of an attempt (no event row, at most one write a second is worth its
+  /// cost) and an event.
+  void record_progress(const std::string& id, const std::string& token,
+                       const std::string& progress);
+  void record_event(const std::string& id, const std::string& name, const std::string& detail);
+  /// Ended jobs only (conflict otherwise). Its folder is the caller's to remove, before or after.
+  void remove(const std::string& id);
+
+  /// Events with number > after; of one job when `id` is not empty.
+  [[nodiscard]] std::vector<JobEvent> events(const std::string& id, std::int64_t after,
+                                             std::size_t limit) const;
+  /// Waits until there is an event with number > after (of the job, if given) or the time is over.
+  void wait_for_event(const std::string& id, std::int64_t after, double seconds) const;
+  /// Number of the newest event.
+  [[nodiscard]] std::int64_t last_event() const;
+  /// Wakes all waiters, for a stop.
+  void wake();
+
+  /// Inserts a row made from a job's folder; used by --rebuild. Does nothing when the id is there.
+  void adopt(const Job& job);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sluice

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "service/job_store.hpp"
+
+namespace sluice {
+
+/// Limits of the service; all can be set on the command line of `sluice serve`.
+struct ServiceLimits {
+  int cores = 0;  ///< threads of all workers together; 0: the machine's
+  std::size_t queued_jobs = 10000;
+  std::uint64_t particles_per_job = 5'000'000;
+  std::uint64_t memory_per_job = 0;          ///< bytes; 0: three quarters of the machine's
+  std::uint64_t disk_per_job = 20ULL << 30;  ///< bytes
+  double wall_seconds_per_attempt = 0.0;     ///< 0: none
+  double stalled_seconds = 60.0;             ///< without progress
+  int crash_limit = 3;
+  std::uint64_t disk_reserve =
+      512ULL << 20;  ///< bytes left free on the data folder's disk: jobs pause before that
+  double retention_days = 0.0;  ///< ended jobs are deleted after that; 0: kept
+};
+
+/// Claims jobs, starts one worker process per attempt (`/proc/self/exe run FOLDER`), reads its JSON
+/// lines, and turns its end into a transition (design section 7). Owns one thread.
+class Scheduler {
+ public:
+  /// At start: jobs that are marked running are adopted, when their folder's lock is still held by
+  /// a live worker of ours, else requeued. `worker` is the program to start, for tests; empty: this
+  /// one.
+  Scheduler(JobStore& store, const std::filesystem::path& data, const ServiceLimits& limits,
+            const std::filesystem::path& worker = {});
+  /// Drains: asks every worker for a checkpoint, waits for them, and puts the jobs back into the
+  /// queue.
+  ~Scheduler();
+
+  /// Looks at the queue now: a job came, or a request to stop one.
+  void poke();
+  /// Stops claiming, has every worker checkpoint, and returns when all are gone. Idempotent.
+  void drain();
+  /// SIGUSR1 to the job's worker. False when it does not run.
+  bool checkpoint_now(const std::string& id);
+  /// Why a queued job does not run yet, for a person; empty for a job that is not queued.
+  [[nodiscard]] std::string why_waiting(const Job& job) const;
+  [[nodiscard]] const ServiceLimits& limits() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sluice
