@@ -35,7 +35,7 @@ std::vector<Series> JobData::series() const {
       continue;  // Putting it aside is for the run, which holds the lock.
     }
   }
-  throw CommandEnd(ExitCode::storage_failure,
+  throw CommandEnd(ExitCode::usage,
                    fmt::format("{} has no samples yet: its scene has no sensors, or it did not run",
                                paths_.root().string()));
 }

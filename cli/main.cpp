@@ -23,7 +23,7 @@ constexpr std::array kVerbs{&add_run,     &add_validate, &add_plan,  &add_inspec
                             &add_sensors, &add_export,   &add_report};
 
 int fail(ExitCode code, std::string_view message) {
-  if (!message.empty()) fmt::print(stderr, "sluice: {}\n", message);
+  if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);
   return static_cast<int>(code);
 }
 

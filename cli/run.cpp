@@ -2,6 +2,8 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -140,7 +142,9 @@ void run(const RunArguments& arguments) {
       run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
   // Stdout belongs to the JSON lines where they are written.
   std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
-  fmt::print(out, "{}{}", summary_text(outcome), next_commands(job, outcome));
+  // A reader who went away is no error of a run that is safe on disk.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::fputs((summary_text(outcome) + next_commands(job, outcome)).c_str(), out);
   if (outcome.exit_code == ExitCode::done) return;
   const bool stopped = outcome.exit_code == ExitCode::checkpointed;
   throw CommandEnd(outcome.exit_code, stopped ? "" : outcome.reason);

@@ -51,7 +51,7 @@ Calibration calibrate(const Scene& scene, const Execution& execution) {
   const Stopwatch clock;
   do {
     simulation.step();
-  } while (clock.seconds() < kTrialSeconds);
+  } while (clock.seconds() < kTrialSeconds && !simulation.finished());
   const double seconds = clock.seconds();
   const auto steps = static_cast<double>(simulation.solver().step_count() - first);
   return {seconds / steps, static_cast<double>(simulation.particle_steps() - before) / seconds,

@@ -59,7 +59,7 @@ Finding escaped(double share, const StepFacts& facts, std::string_view suggestio
 
 Finding too_many_escaped(const GuardLimits& limits, const StepFacts& facts) {
   return escaped(limits.leaked_share, facts,
-                 "set numerics.wall_pressure to clamped, or widen the domain");
+                 "clamp numerics.wall_pressure, lower numerics.courant, or widen the domain");
 }
 
 Finding energy_grew(const GuardLimits& limits, const StepFacts& facts) {
@@ -83,7 +83,8 @@ Finding fast(const GuardLimits& limits, const StepFacts& facts) {
 }
 
 Finding some_escaped(const GuardLimits& limits, const StepFacts& facts) {
-  return escaped(limits.leaked_share_warning, facts, "set numerics.wall_pressure to clamped");
+  return escaped(limits.leaked_share_warning, facts,
+                 "clamp numerics.wall_pressure, or lower numerics.courant");
 }
 
 // clang-format off

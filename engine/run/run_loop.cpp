@@ -23,8 +23,10 @@ using Json = nlohmann::ordered_json;
 /// One attempt at a job, from its first step to its last.
 class RunLoop {
  public:
-  RunLoop(JobFolder& folder, const RunOptions& options, Reporter& reporter, Simulation& simulation)
+  RunLoop(JobFolder& folder, const RunOptions& options, SignalRequests& signals, Reporter& reporter,
+          Simulation& simulation)
       : options_(options),
+        signals_(&signals),
         reporter_(&reporter),
         simulation_(&simulation),
         writer_(folder, options, reporter),
@@ -70,7 +72,7 @@ class RunLoop {
   }
 
   bool stop_asked() {
-    const Request request = signals_.take();
+    const Request request = signals_->take();
     if (request == Request::checkpoint) writer_.checkpoint_soon(*simulation_);
     if (request == Request::stop) stop_reason_ = "stopped by a signal";
     const bool enough =
@@ -135,9 +137,9 @@ class RunLoop {
   }
 
   RunOptions options_;
+  SignalRequests* signals_;
   Reporter* reporter_;
   Simulation* simulation_;
-  SignalRequests signals_;
   Stopwatch clock_;
   JobWriter writer_;
   RateMeter rate_;
@@ -190,24 +192,24 @@ void report_outcome(const Outcome& outcome, Reporter& reporter) {
 }
 
 Outcome run_from_scene(JobFolder& folder, const Scene& scene, const RunOptions& options,
-                       Reporter& reporter) {
+                       SignalRequests& signals, Reporter& reporter) {
   try {
     Simulation simulation(scene, options.execution);
     reporter.event("started", started_fields(simulation, folder));
-    return RunLoop(folder, options, reporter, simulation).run();
+    return RunLoop(folder, options, signals, reporter, simulation).run();
   } catch (const NumericalFailure& failure) {
     return failed_at_start(folder, scene, failure);
   }
 }
 
 Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOptions& options,
-                            Reporter& reporter, Restored restored) {
+                            SignalRequests& signals, Reporter& reporter, Restored restored) {
   report_rejected(restored.rejected, reporter);
   Simulation simulation(scene, options.execution, std::move(restored.checkpoint));
   Json fields = started_fields(simulation, folder);
   fields["file"] = restored.path.filename().string();
   reporter.event("resumed", fields);
-  RunLoop loop(folder, options, reporter, simulation);
+  RunLoop loop(folder, options, signals, reporter, simulation);
   loop.resumed_at(simulation.solver().step_count());
   return loop.run();
 }
@@ -216,14 +218,16 @@ Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOpti
 
 Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options,
                 Reporter& reporter) {
+  // Before the first event and until after the last, so that no signal that answers one is lost.
+  SignalRequests signals;
   LoggingReporter logging(reporter, folder.paths().log());
   std::optional<Restored> restored = folder.newest_checkpoint(expectation_of(scene));
   // An outcome of an earlier attempt says nothing about this one.
   std::error_code ignored;
   std::filesystem::remove(folder.paths().outcome(), ignored);
   const Outcome outcome =
-      restored ? run_from_checkpoint(folder, scene, options, logging, *std::move(restored))
-               : run_from_scene(folder, scene, options, logging);
+      restored ? run_from_checkpoint(folder, scene, options, signals, logging, *std::move(restored))
+               : run_from_scene(folder, scene, options, signals, logging);
   report_outcome(outcome, logging);
   return outcome;
 }
