@@ -18,7 +18,8 @@ std::string number(const std::optional<double>& value, int decimals = 3) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(kNone);
 }
 
-std::string scheme_text(const Method& method) {
+std::string scheme_text(const Scene& scene) {
+  const Method& method = scene.method;
   std::string text =
       fmt::format("{}, precision {}, C = {:g}", word_for(kIntegratorWords, method.integrator),
                   word_for(kPrecisionWords, method.precision), method.courant);
@@ -29,7 +30,7 @@ std::string scheme_text(const Method& method) {
   if (method.viscosity) text += fmt::format(", viscosity alpha {:g}", method.viscosity->alpha);
   if (method.wall_friction) {
     text += fmt::format(", wall friction alpha {:g}", method.wall_friction->alpha);
-  } else {
+  } else if (scene.tank || !scene.obstacles.empty()) {
     text += ", free slip";
   }
   if (method.wall_pressure == WallPressure::clamped) text += ", wall pressure clamped";
@@ -43,7 +44,7 @@ std::string head_text(const Report& report) {
   const Method& method = report.scene.method;
   return fmt::format("{}\nspacing {:g} mm, h = {:g} mm, c = {:.4g} m/s\n{}\n\n", report.scene.name,
                      method.spacing * 1e3, method.smoothing_length * 1e3, method.sound_speed,
-                     scheme_text(method));
+                     scheme_text(report.scene));
 }
 
 /// One table line: a label, then a cell per sensor.
