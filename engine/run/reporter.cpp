@@ -44,10 +44,20 @@ Json optional_number(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+std::string describe_start(std::string_view name, const Json& fields) {
+  return fmt::format(
+      "{} {} in {} at step {}, t = {:.6g} s: {} fluid and {} wall particles, {} threads, {}", name,
+      fields.value("scene", ""), fields.value("folder", ""), fields.value("step", std::uint64_t{0}),
+      fields.value("time", 0.0), fields.value("particles", std::uint64_t{0}),
+      fields.value("wall_particles", std::uint64_t{0}), fields.value("threads", 1),
+      fields.value("simd_target", ""));
+}
+
+/// What a person is told; nothing where the bar or the closing account says it.
 std::string describe(std::string_view name, const Json& fields) {
-  const std::string message = fields.value("message", "");
-  if (!message.empty()) return fmt::format("{}: {}", name, message);
-  return std::string(name);
+  if (name == "started" || name == "resumed") return describe_start(name, fields);
+  if (name != "warning") return {};
+  return fmt::format("{}: {}", name, fields.value("message", ""));
 }
 
 }  // namespace
@@ -98,9 +108,10 @@ void BarReporter::progress(const Progress& progress) {
 
 void BarReporter::event(std::string_view name, const Json& fields) {
   if (name == "checkpoint") return;
+  const std::string line = describe(name, fields);
   const std::string clear = drawn_ > 0 ? fmt::format("\r{:{}}\r", "", drawn_) : "";
   drawn_ = 0;
-  put(out_, fmt::format("{}{}\n", clear, describe(name, fields)));
+  put(out_, fmt::format("{}{}{}", clear, line, line.empty() ? "" : "\n"));
 }
 
 LoggingReporter::LoggingReporter(Reporter& next, std::filesystem::path log)

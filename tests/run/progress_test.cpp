@@ -82,6 +82,20 @@ TEST(ProgressBar, NeverOutgrowsTheTerminal) {
   EXPECT_NE(progress_bar(progress, 150).find("50.0 %"), std::string::npos);
 }
 
+TEST(Bar, TellsOfWarningsAndLeavesTheRestToTheAccount) {
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* file = open_memstream(&text, &size);
+  BarReporter reporter(file);
+  reporter.event("checkpoint", {{"step", 5}});
+  reporter.event("finished", {{"step", 9}});
+  reporter.event("warning", {{"message", "mind the gap"}});
+  std::fclose(file);
+  const std::string lines(text, size);
+  free(text);
+  EXPECT_EQ(lines, "warning: mind the gap\n");
+}
+
 TEST(JsonLine, IsOneObjectPerLineEvenWhenANameIsNoUtf8) {
   char* text = nullptr;
   std::size_t size = 0;
