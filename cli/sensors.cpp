@@ -7,8 +7,8 @@
 
 #include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
-#include "engine/run/dimensionless.hpp"
-#include "engine/run/filter.hpp"
+#include "engine/store/dimensionless.hpp"
+#include "engine/store/filter.hpp"
 
 namespace sluice {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/run/filter.hpp"
+#include "engine/store/filter.hpp"
 
 namespace sluice {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "engine/run/filter.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
+#include "engine/store/filter.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/series_file.hpp"
 

@@ -1,4 +1,4 @@
-#include "engine/run/filter.hpp"
+#include "engine/store/filter.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "engine/run/dimensionless.hpp"
+#include "engine/store/dimensionless.hpp"
 
 #include <fmt/format.h>
 
