@@ -39,6 +39,9 @@ std::vector<double> crossings(const Shape& shape, double y) {
   return {};
 }
 
+// Width in cells of the rim in which a point counts as on the boundary between cells.
+constexpr double kRim = 1e-6;
+
 std::int64_t first_center_from(double cells) {
   return static_cast<std::int64_t>(std::ceil(cells - 0.5));
 }
@@ -110,12 +113,12 @@ bool CellSet::holds(std::int64_t row, std::int64_t first, std::int64_t last) con
 }
 
 bool CellSet::covers(const Vec& point) const {
-  constexpr double kHalf = 0.5 - 1e-6;
   const Vec cells = (point - origin_).cwiseQuotient(step_);
-  const Vec cell = cells.array().floor();
-  if ((cells - cell - Vec::Constant(0.5)).cwiseAbs().maxCoeff() > kHalf) return false;
-  const auto column = static_cast<std::int64_t>(cell.x());
-  return holds(static_cast<std::int64_t>(cell.y()), column, column);
+  const auto cell = [](double place) { return static_cast<std::int64_t>(std::floor(place)); };
+  for (std::int64_t row = cell(cells.y() - kRim); row <= cell(cells.y() + kRim); ++row) {
+    if (!holds(row, cell(cells.x() - kRim), cell(cells.x() + kRim))) return false;
+  }
+  return true;
 }
 
 bool CellSet::is_deep(std::int64_t row, std::int64_t column, std::int64_t layers) const {

@@ -24,8 +24,8 @@ class CellSet {
   CellSet(const Shape& shape, double spacing, CellFit fit);
 
   [[nodiscard]] std::size_t size() const;
-  /// Whether a point lies in one of the cells by more than a millionth of it, so that points of
-  /// neighbouring cells do not count.
+  /// Whether a point lies in the cells; on the boundary of one (to a millionth of its width), only
+  /// if the cells on all sides are in the set.
   [[nodiscard]] bool covers(const Vec& point) const;
   /// Whether every cell up to `layers` rows and columns away is in the set too.
   [[nodiscard]] bool is_deep(std::int64_t row, std::int64_t column, std::int64_t layers) const;

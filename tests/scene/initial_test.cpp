@@ -1,0 +1,240 @@
+#include "engine/scene/initial.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tests/scene/support.hpp"
+
+namespace sluice {
+namespace {
+
+using nlohmann::json;
+using testing::base_scene;
+using testing::free_scene;
+using ::testing::HasSubstr;
+using testing::parsed;
+
+Scene example(const std::string& name) {
+  const auto path = testing::source_dir() / "schemas/examples" / (name + ".json");
+  return parsed(json::parse(testing::read_text(path)));
+}
+
+json region(const char* text) { return json::parse(text); }
+
+/// Smallest distance between any two points, O(n^2).
+double smallest_distance(const std::vector<Vec>& points) {
+  double smallest = INFINITY;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      smallest = std::min(smallest, (points[i] - points[j]).norm());
+    }
+  }
+  return smallest;
+}
+
+std::vector<Vec> positions(const Particles& particles) {
+  std::vector<Vec> result;
+  for (std::size_t i = 0; i < particles.size(); ++i) result.push_back(particles.position(i));
+  return result;
+}
+
+TEST(InitialParticles, FillThePapersColumnWith200By100) {
+  const Particles p = create_particles(example("dambreak-paper")).state.particles;
+  ASSERT_EQ(p.size(), 20000U);
+  EXPECT_DOUBLE_EQ(p.x.front(), 0.0015);
+  EXPECT_DOUBLE_EQ(p.y.front(), 0.0015);
+  EXPECT_DOUBLE_EQ(p.x[199], 0.5985);
+  EXPECT_DOUBLE_EQ(p.y[200], 0.0045);
+  EXPECT_DOUBLE_EQ(p.x.back(), 0.5985);
+  EXPECT_DOUBLE_EQ(p.y.back(), 0.2985);
+}
+
+TEST(InitialParticles, FillTheCoarseColumnWithAbout7600) {
+  // round(0.6/0.00487) round(0.3/0.00487) = 123 x 62.
+  EXPECT_EQ(create_particles(example("dambreak-paper-coarse")).state.particles.size(), 7626U);
+}
+
+TEST(InitialParticles, FillNothingButWhatTheSolverIsPromised) {
+  const SolverState state = create_particles(parsed(base_scene())).state;
+  EXPECT_EQ(state.step, 0U);
+  EXPECT_EQ(state.time, 0.0);
+  EXPECT_TRUE(state.retired.empty());
+  for (const Field& field : kFields) {
+    const std::vector<double>& values = state.particles.*field.member;
+    const bool filled = field.name == "x" || field.name == "y" || field.name == "vx" ||
+                        field.name == "vy" || field.name == "density_excess" || field.name == "id";
+    EXPECT_EQ(values.size(), filled ? 200U : 0U) << field.name;
+  }
+}
+
+TEST(InitialParticles, AreNumberedInOrderOverAllRegions) {
+  json text = base_scene();
+  text["fluid"].push_back(region(R"({"shape": "circle", "center": [1.5, 0.5], "radius": 0.2})"));
+  const Particles p = create_particles(parsed(text)).state.particles;
+  ASSERT_GT(p.size(), 200U);
+  for (std::size_t i = 0; i < p.size(); ++i) ASSERT_EQ(p.id[i], static_cast<double>(i));
+}
+
+TEST(InitialParticles, StartWithTheirRegionsVelocity) {
+  json text = base_scene();
+  text["fluid"].push_back(
+      region(R"({"shape": "circle", "center": [1.5, 0.5], "radius": 0.2, "velocity": [-1, 2]})"));
+  const Particles p = create_particles(parsed(text)).state.particles;
+  EXPECT_EQ(p.velocity(0), Vec(0, 0));
+  EXPECT_EQ(p.velocity(199), Vec(0, 0));
+  EXPECT_EQ(p.velocity(200), Vec(-1, 2));
+}
+
+TEST(InitialParticles, StartWithTheDensityOfWaterAtRest) {
+  // rho - rho_0 = rho_0 g (top - y) / c^2.
+  const Scene scene = parsed(base_scene());
+  const Particles p = create_particles(scene).state.particles;
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_NEAR(p.density_excess[i], 1000 * 9.81 * (0.5 - p.y[i]) / c2, 1e-12);
+  }
+}
+
+TEST(InitialParticles, FeelGravityAcrossAndUpwards) {
+  json text = base_scene();
+  text["gravity"] = {3, 4};  // deepest at the upper right, free of pressure at the lower left
+  const Scene scene = parsed(text);
+  const Particles p = create_particles(scene).state.particles;
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_NEAR(p.density_excess[i], 1000 * (3 * p.x[i] + 4 * p.y[i]) / c2, 1e-12);
+  }
+}
+
+TEST(InitialParticles, HaveNoExcessWithoutPressureOrGravity) {
+  json text = base_scene();
+  text["fluid"][0]["pressure"] = "zero";
+  const json drop = region(R"({"shape": "circle", "center": [1, 1], "radius": 0.5})");
+  for (const json& each : {text, free_scene(drop)}) {
+    for (const double excess : create_particles(parsed(each)).state.particles.density_excess) {
+      ASSERT_EQ(excess, 0.0);
+    }
+  }
+}
+
+TEST(InitialParticles, HaveNoNegativePressureUnderACurvedTop) {
+  json text =
+      free_scene(region(R"({"shape": "ellipse", "center": [1, 1], "semi_axes": [0.5, 0.3]})"));
+  text["gravity"] = {-2, -9};
+  for (const double excess : create_particles(parsed(text)).state.particles.density_excess) {
+    ASSERT_GE(excess, 0.0);
+  }
+}
+
+TEST(InitialParticles, CoverAShapesAreaToOneRowAlongItsOutline) {
+  const char* shapes[] = {
+      R"({"shape": "circle", "center": [0.31, 0.17], "radius": 1})",
+      R"({"shape": "ellipse", "center": [-3.3, 2.2], "semi_axes": [1.5, 0.5]})",
+      R"({"shape": "polygon", "points": [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]})",
+      R"({"shape": "polygon", "points": [[0, 0], [2, 0.3], [3, 2], [1, 0.9]]})"};
+  const double areas[] = {std::numbers::pi, 0.75 * std::numbers::pi, 3.0, 1.9};
+  const double outlines[] = {2 * std::numbers::pi, 6.7, 8.0, 7.0};
+  for (int i = 0; i < 4; ++i) {
+    const auto count =
+        create_particles(parsed(free_scene(region(shapes[i])))).state.particles.size();
+    // A cell that the outline crosses may count or not.
+    EXPECT_NEAR(static_cast<double>(count) * 0.05 * 0.05, areas[i], outlines[i] * 0.05 / 2) << i;
+  }
+}
+
+TEST(InitialParticles, LieOnTheLatticeOfTheOriginInACircle) {
+  const json drop = region(R"({"shape": "circle", "center": [0.013, 0.017], "radius": 0.5})");
+  const Particles p = create_particles(parsed(free_scene(drop))).state.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_LE((p.position(i) - Vec(0.013, 0.017)).norm(), 0.5);
+    const Vec cells = p.position(i) / 0.05 - Vec(0.5, 0.5);
+    EXPECT_NEAR(cells.x(), std::round(cells.x()), 1e-9);
+    EXPECT_NEAR(cells.y(), std::round(cells.y()), 1e-9);
+  }
+}
+
+TEST(InitialParticles, OfRegionsSideBySideAreNoOverlap) {
+  json text = base_scene();
+  // 0.27 m is 5.4 cells: the first region stands short of the second one's corner.
+  text["fluid"] = json::parse(R"([
+      {"shape": "rectangle", "corner": [0, 0], "size": [0.27, 0.5]},
+      {"shape": "rectangle", "corner": [0.27, 0], "size": [0.5, 0.5]}])");
+  const auto points = positions(create_particles(parsed(text)).state.particles);
+  EXPECT_EQ(points.size(), 5U * 10U + 10U * 10U);
+  EXPECT_GE(smallest_distance(points), 0.5 * 0.05);
+}
+
+TEST(InitialParticles, OfOverlappingRegionsAreRefusedByName) {
+  json text = base_scene();
+  text["fluid"].push_back(region(R"({"shape": "circle", "center": [1.1, 0.3], "radius": 0.2})"));
+  try {
+    (void)create_particles(parsed(text));
+    FAIL() << "two regions overlap";
+  } catch (const SceneError& error) {
+    EXPECT_EQ(error.problem().pointer, "/fluid/1");
+    EXPECT_THAT(error.problem().message, HasSubstr("overlaps /fluid/0"));
+  }
+}
+
+TEST(InitialParticles, OfARegionWithinAnotherAreRefused) {
+  json text = base_scene();
+  // Half a cell off the other's lattice both ways, where no two particles come close.
+  text["fluid"].push_back(
+      region(R"({"shape": "rectangle", "corner": [0.225, 0.225], "size": [0.1, 0.1]})"));
+  EXPECT_THROW((void)create_particles(parsed(text)), SceneError);
+}
+
+TEST(InitialParticles, GiveWayToObstaclesByHalfASpacing) {
+  json text = base_scene();
+  text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.25], "radius": 0.1}])");
+  const Particles p = create_particles(parsed(text)).state.particles;
+  std::size_t expected = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 10; ++j) {
+      const Vec center(0.05 * (i + 0.5), 0.05 * (j + 0.5));
+      expected += (center - Vec(0.5, 0.25)).norm() >= 0.125 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(p.size(), expected);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_GE((p.position(i) - Vec(0.5, 0.25)).norm(), 0.125 - 1e-9);
+  }
+}
+
+TEST(InitialParticles, StayHalfASpacingAboveAFlatObstacle) {
+  json text = base_scene();
+  text["obstacles"] =
+      json::parse(R"([{"shape": "rectangle", "corner": [0.2, 0], "size": [0.3, 0.1]}])");
+  EXPECT_EQ(create_particles(parsed(text)).state.particles.size(), 200U - 6U * 2U);
+}
+
+TEST(InitialParticles, AreMissedWhereAnObstacleTakesAWholeRegion) {
+  json text = base_scene();
+  text["obstacles"] =
+      json::parse(R"([{"shape": "rectangle", "corner": [0, 0], "size": [1.2, 0.6]}])");
+  EXPECT_THROW((void)create_particles(parsed(text)), SceneError);
+}
+
+RC_GTEST_PROP(InitialParticles, OfARectangleStayWithinHalfASpacingOfIt, ()) {
+  const double width = *rc::gen::inRange(50, 3000) / 1000.0;
+  const double height = *rc::gen::inRange(50, 3000) / 1000.0;
+  const Particles p =
+      create_particles(
+          parsed(
+              free_scene({{"shape", "rectangle"}, {"corner", {-1, 2}}, {"size", {width, height}}})))
+          .state.particles;
+  const auto cells = [](double length) { return std::max(1.0, std::round(length / 0.05)); };
+  RC_ASSERT(static_cast<double>(p.size()) == cells(width) * cells(height));
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    RC_ASSERT(p.x[i] > -1 && p.x[i] < -1 + width + 1e-9);
+    RC_ASSERT(p.y[i] > 2 && p.y[i] < 2 + height + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace sluice

@@ -1,0 +1,170 @@
+#include "engine/scene/plan.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/estimate.hpp"
+#include "engine/scene/initial.hpp"
+#include "engine/sph/particles.hpp"
+#include "tests/scene/support.hpp"
+
+namespace sluice {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using testing::base_scene;
+using ::testing::Contains;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+using testing::parsed;
+
+std::vector<std::string> names(const std::vector<PlanItem>& items) {
+  std::vector<std::string> result;
+  for (const PlanItem& item : items) result.push_back(item.name);
+  return result;
+}
+
+std::string reason(const std::vector<PlanItem>& items, const std::string& name) {
+  for (const PlanItem& item : items) {
+    if (item.name == name) return item.reason;
+  }
+  return "not there";
+}
+
+TEST(Plan, LeavesOutWhatAnEmptySceneDoesNotName) {
+  const Plan p =
+      plan(parsed(testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}})));
+  EXPECT_THAT(names(p.passes_left_out),
+              IsSupersetOf({"density_diffusion", "artificial_viscosity", "wall_pressure",
+                            "wall_friction", "gravity", "reinitialisation", "sample"}));
+  EXPECT_THAT(names(p.passes), IsSupersetOf({"sort", "continuity", "momentum", "update"}));
+  EXPECT_THAT(names(p.files_left_out), IsSupersetOf({"series", "frames"}));
+}
+
+TEST(Plan, GivesTheMissingKeyAsTheReason) {
+  const Plan p = plan(parsed(base_scene()));
+  EXPECT_EQ(reason(p.passes_left_out, "density_diffusion"), "no key numerics.density_diffusion");
+  EXPECT_EQ(reason(p.passes, "wall_pressure"), "key tank");
+  EXPECT_EQ(reason(p.passes, "gravity"), "key gravity");
+}
+
+TEST(Plan, RunsWhatASceneNames) {
+  json text = base_scene();
+  text["numerics"] = json::parse(R"({"density_diffusion": {}, "artificial_viscosity": {},
+                                     "wall_friction": {}, "reinitialisation": {}})");
+  text["sensors"] = json::parse(R"([{"name": "e", "kind": "energy", "interval": 0.1}])");
+  const Plan p = plan(parsed(text));
+  EXPECT_TRUE(p.passes_left_out.empty());
+  EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
+}
+
+TEST(Plan, LeavesOutWallFrictionWhereThereIsNoWall) {
+  json text = testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}});
+  text["numerics"]["wall_friction"] = json::object();
+  const Plan p = plan(parsed(text));
+  EXPECT_THAT(names(p.passes), Not(Contains("wall_friction")));
+  EXPECT_THAT(names(p.passes_left_out), Contains("wall_friction"));
+}
+
+TEST(Plan, NamesEachFieldOnceAsItsIntegratorCarriesIt) {
+  for (const auto& [word, integrator] :
+       {std::pair{"modified_leap_frog", Integrator::modified_leap_frog},
+        std::pair{"kick_drift_kick", Integrator::kick_drift_kick}}) {
+    json text = base_scene();
+    text["numerics"]["integrator"] = word;
+    const Plan p = plan(parsed(text));
+    EXPECT_EQ(p.fields.size() + p.fields_left_out.size(), kFields.size());
+    for (const Field& field : kFields) {
+      const auto& list = carries(integrator, field) ? p.fields : p.fields_left_out;
+      EXPECT_THAT(names(list), Contains(std::string(field.name))) << word;
+    }
+  }
+}
+
+TEST(Plan, IsJsonWithAReasonForEachItem) {
+  const json text = json::parse(plan_json(plan(parsed(base_scene()))));
+  for (const char* key :
+       {"passes", "passes_left_out", "fields", "fields_left_out", "files", "files_left_out"}) {
+    ASSERT_TRUE(text.contains(key)) << key;
+    for (const json& item : text[key]) EXPECT_FALSE(item.at("reason").get<std::string>().empty());
+  }
+}
+
+TEST(Estimate, CountsWhatIsMade) {
+  for (const char* name : {"dambreak-paper", "dambreak-paper-coarse", "still-water"}) {
+    const auto path = testing::source_dir() / "schemas/examples" / (std::string(name) + ".json");
+    const Scene scene = parsed(json::parse(testing::read_text(path)));
+    const InitialParticles made = create_particles(scene);
+    const Estimate e = estimate(scene);
+    EXPECT_EQ(e.fluid_particles, made.state.particles.size()) << name;
+    EXPECT_EQ(e.wall_particles, made.walls.size()) << name;
+  }
+}
+
+TEST(Estimate, ComesCloseForCurvedShapesAndObstacles) {
+  json text = base_scene();
+  text["resolution"]["spacing"] = 0.005;
+  text["fluid"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.5], "radius": 0.4}])");
+  text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [1.5, 0.5], "radius": 0.4}])");
+  const Scene scene = parsed(text);
+  const InitialParticles made = create_particles(scene);
+  const Estimate e = estimate(scene);
+  const auto fluid = static_cast<double>(made.state.particles.size());
+  EXPECT_NEAR(static_cast<double>(e.fluid_particles), fluid, 0.02 * fluid);
+  const auto walls = static_cast<double>(made.walls.size());
+  EXPECT_NEAR(static_cast<double>(e.wall_particles), walls, 0.3 * walls);
+}
+
+TEST(Estimate, StepsAsEquation18Says) {
+  json text = base_scene();
+  text["material"]["sound_speed"] = 50;
+  const Estimate e = estimate(parsed(text));
+  const double speed = std::sqrt(2 * 9.81 * 0.5);
+  EXPECT_DOUBLE_EQ(e.time_step, 0.25 * 0.05 / (50 + speed));
+  EXPECT_EQ(e.steps, static_cast<std::uint64_t>(std::ceil(1 / e.time_step)));
+}
+
+TEST(Estimate, StepsAsTheForceConditionSaysWhereItIsShorter) {
+  json text = base_scene();
+  text["material"]["sound_speed"] = 5;
+  text["numerics"]["courant"] = 2;
+  EXPECT_DOUBLE_EQ(estimate(parsed(text)).time_step,
+                   std::min(2 * 0.05 / (5 + std::sqrt(9.81)), 0.25 * std::sqrt(0.05 / 9.81)));
+}
+
+TEST(Estimate, CountsSamplesByIntervalAndStepsWhereThereIsNone) {
+  json text = base_scene();
+  text["sensors"] = json::parse(R"([{"name": "a", "kind": "energy", "interval": 0.25},
+                                    {"name": "b", "kind": "energy", "interval": 0}])");
+  const Estimate e = estimate(parsed(text));
+  // t = 0, 0.25, 0.5, 0.75, 1, and every step.
+  EXPECT_NEAR(static_cast<double>(e.samples), 5.0 + static_cast<double>(e.steps), 1.0);
+}
+
+TEST(Estimate, AsksForNoDiskOrMemoryOfWhatIsNotThere) {
+  const json bare = base_scene();
+  json full = bare;
+  full["output"]["frames"]["interval"] = 0.1;
+  full["sensors"] = json::parse(R"([{"name": "a", "kind": "energy", "interval": 0.01}])");
+  const Estimate a = estimate(parsed(bare));
+  const Estimate b = estimate(parsed(full));
+  EXPECT_EQ(a.samples, 0U);
+  EXPECT_EQ(a.frames, 0U);
+  EXPECT_EQ(b.frames, 11U);
+  EXPECT_LT(a.disk_bytes, b.disk_bytes);
+  EXPECT_LT(a.memory_bytes, b.memory_bytes);
+}
+
+TEST(Estimate, IsJson) {
+  const Estimate e = estimate(parsed(base_scene()));
+  const json text = json::parse(estimate_json(e));
+  EXPECT_EQ(text.at("fluid_particles"), 200);
+  EXPECT_EQ(text.at("time_step"), e.time_step);
+}
+
+}  // namespace
+}  // namespace sluice

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/scene/parse.hpp"
+
+namespace sluice::testing {
+
+inline std::filesystem::path source_dir() { return SLUICE_SOURCE_DIR; }
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline std::vector<std::filesystem::path> json_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  EXPECT_FALSE(files.empty()) << folder;
+  return files;
+}
+
+/// A tank of 2 m x 1 m with a column of 1 m x 0.5 m at its left wall, dx = 0.05 m: 200 particles.
+inline nlohmann::json base_scene() {
+  return nlohmann::json::parse(R"({
+    "name": "base",
+    "tank": {"width": 2, "height": 1},
+    "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [1, 0.5]}],
+    "gravity": [0, -9.81],
+    "resolution": {"spacing": 0.05},
+    "end_time": 1
+  })");
+}
+
+/// A free region with dx = 0.05 m, neither walls nor gravity, c = 20 m/s.
+inline nlohmann::json free_scene(nlohmann::json region) {
+  nlohmann::json scene = base_scene();
+  scene.erase("tank");
+  scene.erase("gravity");
+  scene["material"]["sound_speed"] = 20;
+  scene["fluid"] = {std::move(region)};
+  return scene;
+}
+
+inline std::string list(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& each : problems) text += "'" + each.pointer + "': " + each.message + "\n";
+  return text;
+}
+
+inline ParseResult parse(const nlohmann::json& scene) { return parse_scene(scene.dump()); }
+
+/// The scene of a text that must be valid.
+inline Scene parsed(const nlohmann::json& scene) {
+  ParseResult result = parse(scene);
+  if (!result.scene) throw std::runtime_error("not a valid scene:\n" + list(result.problems));
+  return *result.scene;
+}
+
+inline std::vector<std::string> pointers(const ParseResult& result) {
+  std::vector<std::string> found;
+  for (const Problem& each : result.problems) found.push_back(each.pointer);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// The message at a pointer, "" when there is none.
+inline std::string message_at(const ParseResult& result, const std::string& pointer) {
+  for (const Problem& each : result.problems) {
+    if (each.pointer == pointer) return each.message;
+  }
+  return "";
+}
+
+}  // namespace sluice::testing
