@@ -412,9 +412,9 @@ void Engine<T>::bind() {
     build_pair_list(team_, sweeps_, cut_off, tile, wall_layout_, wall_bounds_, view(walls_), layout,
                     bounds, view(pairs_), wall_to_fluid_);
   }
+  extremes.max_neighbours = most_neighbours();
   for_chunks(
       [&](const ParticleSpan& p, Motion&) { sweeps_.updates.write_pairs(p, scales(), pairs_); });
-  extremes.max_neighbours = most_neighbours();
 }
 
 /// Exact where a list is long enough to hold too many neighbours, else the bound that the lists
