@@ -30,6 +30,8 @@ enum class JobAction {
 
 /// A request that a running worker has yet to obey.
 enum class PendingStop { none, pause, cancel };
+[[nodiscard]] std::string_view to_string(PendingStop stop);
+[[nodiscard]] std::optional<PendingStop> pending_stop(std::string_view word);
 
 /// The scheduling row of a job. All physics is in its folder, DATA/jobs/<id>.
 struct Job {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "service/job.hpp"
@@ -35,7 +36,8 @@ class JobStoreError : public std::runtime_error {
   Fault fault_;
 };
 
-/// What a transition changes beside the state. Absent members stay as they are.
+/// What a transition changes beside the state. Absent members stay as they are, but a resume clears
+/// the reason and the crashes, and a claim the reason.
 struct JobChange {
   std::optional<std::string> reason;
   std::optional<std::string> outcome;
@@ -83,6 +85,7 @@ class JobStore {
   [[nodiscard]] std::optional<Job> find(const std::string& id) const;
   /// Newest first.
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) const;
+  /// All states, those without a job too.
   [[nodiscard]] std::vector<std::pair<JobState, std::size_t>> count_by_state() const;
 
   /// Claims the queued job with the highest priority, then age, that needs at most `threads`: one
@@ -91,8 +94,10 @@ class JobStore {
 
   /// Applies the transition that the table gives for `action` in the job's state. `token` guards
   /// actions of an attempt: conflict when it is not the running one's; empty for requests of users.
-  /// A pause or cancel of a running job only marks `pending_stop`. Idempotent for users: pausing a
-  /// paused job returns it unchanged.
+  /// A pause or cancel of a running job only marks `pending_stop`, and a cancel wins over a pause;
+  /// what was asked for is obeyed however the attempt ends, requeue included, unless it completes
+  /// or fails. Idempotent for users: pausing a paused job returns it unchanged, without an event.
+  /// An end time may only become later, and only by a resume that puts the job into the queue.
   Job apply(const std::string& id, JobAction action, const std::string& token,
             const JobChange& change);
   /// The last progress line of an attempt (no event row, at most one write a second is worth its
@@ -100,7 +105,8 @@ class JobStore {
   void record_progress(const std::string& id, const std::string& token,
                        const std::string& progress);
   void record_event(const std::string& id, const std::string& name, const std::string& detail);
-  /// Ended jobs only (conflict otherwise). Its folder is the caller's to remove, before or after.
+  /// Ended jobs only (conflict otherwise), with their events and key. The folder is the caller's to
+  /// remove, before or after.
   void remove(const std::string& id);
 
   /// Events with number > after; of one job when `id` is not empty.
@@ -108,13 +114,15 @@ class JobStore {
                                              std::size_t limit) const;
   /// Waits until there is an event with number > after (of the job, if given) or the time is over.
   void wait_for_event(const std::string& id, std::int64_t after, double seconds) const;
-  /// Number of the newest event.
+  /// Number of the newest event; 0 before the first.
   [[nodiscard]] std::int64_t last_event() const;
-  /// Wakes all waiters, for a stop.
+  /// Wakes all waiters, for a stop; from then on nobody waits.
   void wake();
 
-  /// Inserts a row made from a job's folder; used by --rebuild. Does nothing when the id is there.
-  void adopt(const Job& job);
+  /// Inserts a row made from a job's folder, with its Idempotency-Key if it had one; used by
+  /// --rebuild. False when the id is there: nothing is changed then. Throws key_reused when another
+  /// job has the key.
+  bool adopt(const Job& job, const std::string& key = {}, const std::string& body_hash = {});
 
  private:
   class Impl;
