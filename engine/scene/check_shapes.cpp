@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/scene/describe.hpp"
 #include "engine/scene/geometry.hpp"
 #include "engine/scene/walls.hpp"
 
@@ -111,6 +112,13 @@ void check_domain(const Scene& scene, const Document& document, Problems& proble
   const double dx = scene.method.spacing;
   if ((domain.min.array() >= domain.max.array()).any()) {
     problems.add("/domain", fmt::format("is {}; min must be below max both ways", show(domain)));
+    return;
+  }
+  if (const Vec reach = domain.min.cwiseAbs().cwiseMax(domain.max.cwiseAbs());
+      reach.maxCoeff() > kCoordinate.high) {
+    problems.add("/domain", fmt::format("is {} (the default); every coordinate must be {}; give a "
+                                        "smaller one or move the scene nearer to the origin",
+                                        show(domain), to_text(kCoordinate, "m")));
     return;
   }
   const double sides = domain.size().maxCoeff() / dx;

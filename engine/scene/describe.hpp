@@ -261,7 +261,7 @@ void describe_resolution(Archive& a, Document& document) {
   a.number("spacing", document.scene.method.spacing,
            {.about = "particle distance dx at the start",
             .unit = "m",
-            .range = from(1e-9, 1e6),
+            .range = from(1e-9, 1e5),
             .need = Need::required});
   a.number("smoothing_ratio", document.smoothing_ratio,
            {.about = "smoothing length over particle distance, h/dx",

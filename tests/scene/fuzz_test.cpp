@@ -43,7 +43,7 @@ void require_sound(const std::string& text) {
   }
   if (!result.scene) return;
   const ParseResult again = parse_scene(canonical_text(*result.scene));
-  RC_ASSERT(again.scene.has_value());
+  if (!again.scene) RC_FAIL(canonical_text(*result.scene) + "\n" + testing::list(again.problems));
   RC_ASSERT(canonical_text(*again.scene) == canonical_text(*result.scene));
   (void)plan_json(plan(*result.scene));
   const Estimate e = estimate(*result.scene);

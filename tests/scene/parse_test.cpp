@@ -206,7 +206,7 @@ TEST(ParseScene, TellsTheValueTheRangeAndTheUnit) {
   json text = base_scene();
   text["resolution"]["spacing"] = -0.003;
   EXPECT_THAT(message_at(parse(text), "/resolution/spacing"),
-              AllOf(HasSubstr("-0.003"), HasSubstr("from 1e-09 to 1e+06 m")));
+              AllOf(HasSubstr("-0.003"), HasSubstr("from 1e-09 to 1e+05 m")));
 }
 
 TEST(ParseScene, TellsTheNearestWordAndKey) {
