@@ -371,7 +371,8 @@ void Engine<T>::set_reach() {
   for (std::size_t s = 0; s < layout.slots(); ++s) {
     if (particles.id[s] < 0.0) continue;
     const double path = particles.velocity(s).norm() * time_span;
-    particles.reach[s] = std::min(kLeastReach * h + path, kMostReach * h);
+    // In this order a speed that is not a number gives the longest reach, and the guards see it.
+    particles.reach[s] = std::min(kMostReach * h, kLeastReach * h + path);
   }
 }
 
@@ -605,6 +606,8 @@ void Engine<T>::step_kick_drift_kick() {
       sweeps_.updates.write_pairs(p, scales(), pairs_);
     });
   }
+  // A sort retires what has no place any more: it is not a leak if that place is not a number.
+  const bool finite = motion_.finite;
   sort_if_needed();
   const PairList* to_wall = wall_count > 0 ? &fluid_to_wall_ : nullptr;
   {
@@ -632,6 +635,7 @@ void Engine<T>::step_kick_drift_kick() {
   const Rates<T> r = rates();
   for_chunks([&](const ParticleSpan& p, Motion&) { sweeps_.updates.kick(p, r, time_step); });
   measure(0.0);
+  extremes.finite = extremes.finite && finite;
   time += time_step;
   ++step_count;
 }
