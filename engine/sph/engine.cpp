@@ -192,7 +192,8 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
     walls_.volume[s] = T{1};
     if (walls_.diffused.size() > 0) {
       const Vec place(slot_x[s], slot_y[s]);
-      wall_hydrostatic_[s] = used ? scales().hydrostatic.dot(place) : 0.0;
+      wall_hydrostatic_[s] =
+          used ? scales().hydrostatic.dot(place) - scales().hydrostatic_middle : 0.0;
     }
   }
 }
@@ -296,6 +297,7 @@ PairScales Engine<T>::scales() const {
   k.inverse_density = 1.0 / method.reference_density;
   if (method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas) {
     k.hydrostatic = method.gravity / (method.sound_speed * method.sound_speed);
+    k.hydrostatic_middle = k.hydrostatic.dot(method.domain.min + method.domain.max) / 2.0;
   }
   k.origin_x = origin_x_.data();
   k.origin_y = origin_y_.data();

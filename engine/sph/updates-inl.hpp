@@ -112,8 +112,9 @@ void write_pairs(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out)
   if (out.diffused.size() == 0) return;
   T* HWY_RESTRICT diffused = out.diffused.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {
-    diffused[i] = static_cast<T>(p.density_excess[i] * k.inverse_density -
-                                 (k.hydrostatic.x() * p.x[i] + k.hydrostatic.y() * p.y[i]));
+    diffused[i] = static_cast<T>(
+        p.density_excess[i] * k.inverse_density -
+        (k.hydrostatic.x() * p.x[i] + k.hydrostatic.y() * p.y[i] - k.hydrostatic_middle));
   }
 }
 

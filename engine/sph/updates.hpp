@@ -65,11 +65,13 @@ struct Motion {
 
 /// Scales from the state to PairArrays.
 struct PairScales {
-  double inverse_length = 0.0;   ///< 1/h
-  double inverse_speed = 0.0;    ///< 1/c
-  double inverse_density = 0.0;  ///< 1/rho_0
-  Vec hydrostatic =
-      Vec::Zero();  ///< f/c^2, 1/m: psi = s - hydrostatic . x; zero for Molteni-Colagrossi
+  double inverse_length = 0.0;      ///< 1/h
+  double inverse_speed = 0.0;       ///< 1/c
+  double inverse_density = 0.0;     ///< 1/rho_0
+  Vec hydrostatic = Vec::Zero();    ///< f/c^2, 1/m: psi = s - hydrostatic . x + hydrostatic_middle;
+                                    ///< zero for Molteni-Colagrossi
+  double hydrostatic_middle = 0.0;  ///< hydrostatic . x in the middle of the domain: taken off psi,
+                                    ///< so that its size does not depend on where the scene lies
   const double* origin_x = nullptr;  ///< per cluster, m
   const double* origin_y = nullptr;
 };
