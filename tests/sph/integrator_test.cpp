@@ -1,0 +1,144 @@
+// The time integration, followed by hand.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/sph/test_fluids.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr double kG = 9.81;
+
+Method falling(Integrator integrator) {
+  Method m = plain_method();
+  m.integrator = integrator;
+  m.gravity = {0.0, -kG};
+  m.domain = {{-50.0, -500.0}, {50.0, 50.0}};
+  return m;
+}
+
+Fluid lone_particle() {
+  Fluid fluid;
+  fluid.add({0.3, 1.0}, {2.0, 5.0}, 0.0);
+  return fluid;
+}
+
+TEST(FreeFall, OfAnIsolatedParticleIsExactWithStepsOfAnyLength) {
+  for (const Integrator integrator : kIntegrators) {
+    for (const Precision precision : kPrecisions) {
+      Method m = falling(integrator);
+      m.precision = precision;
+      Solver solver(m, start_from(lone_particle()), {}, {});
+      double shortest = 1.0;
+      double longest = 0.0;
+      for (int n = 0; n < 1500; ++n) {
+        solver.step();
+        shortest = std::min(shortest, solver.time_step());
+        longest = std::max(longest, solver.time_step());
+      }
+      const double t = solver.time();
+      const Fluid fluid = fluid_of(solver.state());
+      // Relative to the path of some 12 m and the speed of some 12 m/s.
+      EXPECT_GT(t, 1.3);
+      EXPECT_NEAR(fluid.x[0].x(), 0.3 + 2.0 * t, 1e-11);
+      EXPECT_NEAR(fluid.x[0].y(), 1.0 + 5.0 * t - 0.5 * kG * t * t, 1e-11);
+      EXPECT_NEAR(fluid.v[0].x(), 2.0, 1e-12);
+      EXPECT_NEAR(fluid.v[0].y(), 5.0 - kG * t, 1e-11);
+      EXPECT_EQ(fluid.excess[0], 0.0);
+      EXPECT_GT(longest / shortest, 1.2) << "steps do not vary: this test proves less";
+    }
+  }
+}
+
+TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSteps) {
+  Solver solver(falling(Integrator::modified_leap_frog), start_from(lone_particle()), {}, {});
+  double y = 1.0;
+  double v_half = 5.0;
+  double last = 0.0;  // before the first step: its kick is half
+  for (int n = 0; n < 50; ++n) {
+    solver.step();
+    const double dt = solver.time_step();
+    v_half += 0.5 * (last + dt) * -kG;
+    y += dt * v_half;
+    const double v = v_half + 0.5 * dt * -kG;
+    last = dt;
+    const SolverState state = solver.state();
+    ASSERT_NEAR(state.particles.vy_half[0], v_half, 1e-13) << "step " << n;
+    ASSERT_NEAR(state.particles.y[0], y, 1e-13) << "step " << n;
+    ASSERT_NEAR(state.particles.vy[0], v, 1e-13) << "step " << n;
+  }
+}
+
+TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
+  Solver solver(falling(Integrator::kick_drift_kick), start_from(lone_particle()), {}, {});
+  EXPECT_EQ(solver.state().particles.ay[0], -kG) << "the first kick needs the acceleration";
+  double y = 1.0;
+  double v = 5.0;
+  for (int n = 0; n < 50; ++n) {
+    solver.step();
+    const double dt = solver.time_step();
+    v -= 0.5 * dt * kG;
+    y += dt * v;
+    v -= 0.5 * dt * kG;
+    const SolverState state = solver.state();
+    ASSERT_NEAR(state.particles.y[0], y, 1e-13) << "step " << n;
+    ASSERT_NEAR(state.particles.vy[0], v, 1e-13) << "step " << n;
+  }
+}
+
+TEST(Integrators, KeepOnlyTheFieldsTheyNeed) {
+  for (const Integrator integrator : kIntegrators) {
+    const Solver solver(falling(integrator), start_from(lone_particle()), {}, {});
+    const SolverState state = solver.state();
+    for (const Field& field : kFields) {
+      const std::size_t expected = carries(integrator, field) ? 1U : 0U;
+      EXPECT_EQ((state.particles.*field.member).size(), expected) << field.name;
+    }
+  }
+}
+
+TEST(Integrators, TimeIsTheSumOfTheSteps) {
+  for (const Integrator integrator : kIntegrators) {
+    Solver solver(falling(integrator), start_from(lone_particle()), {}, {});
+    double sum = 0.0;
+    for (std::uint64_t n = 1; n <= 30; ++n) {
+      solver.step();
+      sum += solver.time_step();
+      EXPECT_EQ(solver.step_count(), n);
+      EXPECT_EQ(solver.time(), sum);
+    }
+  }
+}
+
+/// Two particles that approach: their distance after 64/k steps of k times the shortest length.
+double distance_after(Integrator integrator, int k) {
+  Method m = plain_method();
+  m.integrator = integrator;
+  m.courant = 0.02 * k;
+  Fluid fluid;
+  fluid.add({0.0, 0.0}, {0.2, 0.0}, 0.0);
+  fluid.add({0.1, 0.0}, {-0.2, 0.0}, 0.0);
+  // The fastest particle is a lone one, so that all steps are equally long.
+  fluid.add({-1.5, -1.5}, {1.0, 0.0}, 0.0);
+  Solver solver(m, start_from(fluid), {}, {});
+  run_steps(solver, 64 / k);
+  const Fluid now = fluid_of(solver.state());
+  return now.x[1].x() - now.x[0].x();
+}
+
+TEST(Integrators, AreOfSecondOrder) {
+  for (const Integrator integrator : kIntegrators) {
+    const double one = distance_after(integrator, 1);
+    const double two = distance_after(integrator, 2);
+    const double four = distance_after(integrator, 4);
+    // Halving the step quarters the error: (y4 - y2)/(y2 - y1) = 4 for second order, 2 for first.
+    EXPECT_NEAR((four - two) / (two - one), 4.0, 0.5) << name_of(integrator);
+  }
+}
+
+}  // namespace
+}  // namespace sluice

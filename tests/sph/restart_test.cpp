@@ -1,0 +1,263 @@
+// The promise of exact restart: same method and SIMD target, any threads, any interruptions, same
+// bits.
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "tests/sph/test_fluids.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr int kColumns = 34;
+constexpr int kRows = 26;
+const Vec kCorner(-1.7, -1.6);
+
+Method method_of(Integrator integrator, Precision precision) {
+  Method m = full_method();
+  m.integrator = integrator;
+  m.precision = precision;
+  m.domain = {{-2.0, -2.0}, {2.0, 1.2}};
+  m.wall_top = 1.0;
+  return m;
+}
+
+/// Violent enough to sort, splash and leave the domain within 60 steps.
+Fluid splash() {
+  Dice dice(77);
+  Fluid fluid = random_block(dice, kCorner, kColumns, kRows, 0.1, 0.1, 1.5, 10.0);
+  for (std::size_t i = 0; i < fluid.size(); i += 97) fluid.v[i] = {3.0, 12.0};
+  for (int k = 0; k < 6; ++k) fluid.add({-1.0 + 0.4 * k, 1.1}, {0.0, 3.0 + 2.0 * k}, 0.0);
+  return fluid;
+}
+
+std::vector<Vec> tank() { return walls_around(kCorner, kColumns, kRows, 0.1); }
+
+struct Whole {
+  SolverState end;
+  std::vector<std::uint64_t> sorted_at;  ///< steps in which a sort took place
+};
+
+Whole uninterrupted(const Method& m, std::uint64_t steps) {
+  Solver solver(m, start_from(splash()), tank(), {});
+  Whole run;
+  for (std::uint64_t n = 0; n < steps; ++n) {
+    const auto sorts = solver.sort_count();
+    solver.step();
+    if (solver.sort_count() != sorts) run.sorted_at.push_back(n);
+  }
+  run.end = solver.state();
+  return run;
+}
+
+/// Stops before each of the given steps and goes on in a new solver, with 1, 2, 3 and 8 threads in
+/// turn.
+SolverState in_parts(const Method& m, std::uint64_t steps, std::vector<std::uint64_t> stops) {
+  std::sort(stops.begin(), stops.end());
+  stops.push_back(steps);
+  constexpr int kThreads[] = {1, 2, 3, 8};
+  SolverState state = start_from(splash());
+  std::size_t part = 0;
+  for (const std::uint64_t stop : stops) {
+    Solver solver(m, state, tank(), {kThreads[part++ % 4], ""});
+    while (solver.step_count() < stop) solver.step();
+    state = solver.state();
+  }
+  return state;
+}
+
+class ThreadsAndRestart : public ::testing::TestWithParam<std::tuple<Integrator, Precision>> {
+ protected:
+  [[nodiscard]] static Method method() {
+    return method_of(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  }
+};
+
+TEST_P(ThreadsAndRestart, TheSplashSortsAndLosesParticlesElseItProvesLittle) {
+  const Whole run = uninterrupted(method(), 60);
+  EXPECT_GT(run.sorted_at.size(), 2U);
+  EXPECT_LT(run.sorted_at.size(), 30U);
+  EXPECT_GT(run.end.retired.size(), 0U);
+}
+
+TEST_P(ThreadsAndRestart, AnyNumberOfThreadsGivesTheSameBits) {
+  const Method m = method();
+  const SolverState expected = uninterrupted(m, 30).end;
+  for (const int threads : {2, 3, 8}) {
+    Solver solver(m, start_from(splash()), tank(), {threads, ""});
+    run_steps(solver, 30);
+    expect_same_bits(solver.state(), expected, std::to_string(threads) + " threads");
+  }
+}
+
+TEST_P(ThreadsAndRestart, AStopAtReinitialisationsAndSortsGivesTheSameBits) {
+  const Method m = method();
+  const Whole run = uninterrupted(m, 60);
+  std::vector<std::uint64_t> stops{0, 1, 2, 19, 20, 21, 39, 40, 41, 60};
+  for (const std::uint64_t sorted : run.sorted_at) {
+    stops.insert(stops.end(), {sorted > 0 ? sorted - 1 : 0, sorted, sorted + 1});
+  }
+  for (const std::uint64_t stop : stops) {
+    const std::uint64_t at = std::min<std::uint64_t>(stop, 60);
+    expect_same_bits(in_parts(m, 60, {at}), run.end, "stop before step " + std::to_string(at));
+  }
+}
+
+TEST_P(ThreadsAndRestart, AStopAfterEveryStepGivesTheSameBits) {
+  const Method m = method();
+  std::vector<std::uint64_t> all(60);
+  std::iota(all.begin(), all.end(), 0U);
+  expect_same_bits(in_parts(m, 60, all), uninterrupted(m, 60).end, "60 stops");
+}
+
+TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
+  const Method m = method();
+  const SolverState expected = uninterrupted(m, 60).end;
+  Dice dice(12);
+  for (int trial = 0; trial < 6; ++trial) {
+    std::vector<std::uint64_t> stops;
+    for (std::size_t k = 1 + dice.below(5); k > 0; --k) stops.push_back(dice.below(61));
+    expect_same_bits(in_parts(m, 60, stops), expected, "trial " + std::to_string(trial));
+  }
+}
+
+TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
+  const Method m = method();
+  Solver watched(m, start_from(splash()), tank(), {});
+  for (int n = 0; n < 30; ++n) {
+    expect_same_bits(watched.state(), watched.state(), "taken twice");
+    static_cast<void>(watched.energy());
+    static_cast<void>(watched.pressure_at({0.0, -1.0}, 0.12));
+    static_cast<void>(watched.surface_height_at(0.0));
+    static_cast<void>(watched.wall_pressures());
+    watched.step();
+  }
+  expect_same_bits(watched.state(), uninterrupted(m, 30).end, "watched at every step");
+}
+
+TEST_P(ThreadsAndRestart, AStateGivenToASolverComesBackAsItWas) {
+  const Method m = method();
+  for (const int steps : {1, 7, 20, 33}) {
+    Solver solver(m, start_from(splash()), tank(), {});
+    run_steps(solver, steps);
+    const SolverState taken = solver.state();
+    const Solver next(m, taken, tank(), {2, ""});
+    expect_same_bits(next.state(), taken, "after " + std::to_string(steps) + " steps");
+    EXPECT_EQ(next.particle_count(), taken.particles.size());
+    EXPECT_EQ(next.step_count(), taken.step);
+    EXPECT_EQ(next.time(), taken.time);
+    EXPECT_EQ(next.time_step(), taken.time_step);
+  }
+}
+
+TEST_P(ThreadsAndRestart, WhatReadersSeeDoesNotDependOnAStop) {
+  const Method m = method();
+  Solver solver(m, start_from(splash()), tank(), {});
+  run_steps(solver, 33);
+  const Solver next(m, solver.state(), tank(), {});
+  for (double x = -1.5; x < 1.7; x += 0.31) {
+    EXPECT_EQ(next.surface_height_at(x).value, solver.surface_height_at(x).value);
+    const Vec point(x, -1.3);
+    EXPECT_EQ(next.pressure_at(point, 0.12).value, solver.pressure_at(point, 0.12).value);
+    EXPECT_EQ(next.pressure_at(point, 0.12).weight, solver.pressure_at(point, 0.12).weight);
+    EXPECT_EQ(next.distance_to_fluid(point), solver.distance_to_fluid(point));
+  }
+  EXPECT_EQ(next.energy().total(), solver.energy().total());
+  EXPECT_EQ(next.surge_front().value, solver.surge_front().value);
+  EXPECT_EQ(next.extremes().max_speed, solver.extremes().max_speed);
+  EXPECT_EQ(next.extremes().max_neighbours, solver.extremes().max_neighbours);
+  EXPECT_EQ(next.extremes().min_density_excess, solver.extremes().min_density_excess);
+  EXPECT_EQ(next.extremes().max_density_excess, solver.extremes().max_density_excess);
+}
+
+/// Hands the same particles over in another order.
+SolverState shuffled(const SolverState& state, std::uint64_t seed) {
+  std::vector<std::size_t> order(state.particles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Dice dice(seed);
+  for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[dice.below(k)]);
+  SolverState other = state;
+  for (const Field& field : kFields) {
+    const auto& from = state.particles.*field.member;
+    auto& to = other.particles.*field.member;
+    for (std::size_t k = 0; k < from.size(); ++k) to[k] = from[order[k]];
+  }
+  return other;
+}
+
+TEST_P(ThreadsAndRestart, TheOrderInWhichParticlesAreGivenChangesNoBit) {
+  const Method m = method();
+  const SolverState expected = uninterrupted(m, 25).end;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Solver solver(m, shuffled(start_from(splash()), seed), tank(), {});
+    run_steps(solver, 25);
+    expect_same_bits(solver.state(), expected, "order " + std::to_string(seed));
+  }
+}
+
+TEST_P(ThreadsAndRestart, TheOrderOfTheWallsMovesOnlyTheirPressures) {
+  const Method m = method();
+  std::vector<Vec> reversed = tank();
+  std::reverse(reversed.begin(), reversed.end());
+  Solver one(m, start_from(splash()), tank(), {});
+  Solver other(m, start_from(splash()), reversed, {});
+  run_steps(one, 10);
+  run_steps(other, 10);
+  expect_same_bits(one.state(), other.state(), "walls reversed");
+  std::vector<double> pressures = other.wall_pressures();
+  std::reverse(pressures.begin(), pressures.end());
+  EXPECT_EQ(one.wall_pressures(), pressures);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Schemes, ThreadsAndRestart,
+    ::testing::Combine(::testing::ValuesIn(kIntegrators), ::testing::ValuesIn(kPrecisions)),
+    [](const auto& scheme) {
+      const bool leap_frog = std::get<0>(scheme.param) == Integrator::modified_leap_frog;
+      return std::string(leap_frog ? "LeapFrog" : "KickDriftKick") +
+             (std::get<1>(scheme.param) == Precision::mixed ? "Mixed" : "Double");
+    });
+
+/// Any small fluid, any stop: what the fixed scenes above do not think of.
+RC_GTEST_PROP(RestartProperty, AnySmallFluidGoesOnWithTheSameBits, ()) {
+  const auto count = *rc::gen::inRange<std::size_t>(1, 40);
+  const auto steps = *rc::gen::inRange(1, 45);
+  const auto stop = *rc::gen::inRange(0, steps + 1);
+  const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
+  Method m =
+      method_of(*rc::gen::element(Integrator::modified_leap_frog, Integrator::kick_drift_kick),
+                *rc::gen::element(Precision::mixed, Precision::double_precision));
+  m.kernel = *rc::gen::element(KernelKind::truncated_gaussian, KernelKind::wendland_c2);
+  m.reinitialisation->interval = *rc::gen::inRange(1, 25);
+  Dice dice(seed);
+  Fluid fluid;
+  for (std::size_t i = 0; i < count; ++i) {
+    fluid.add(dice.in_box({-0.5, -0.5}, {0.5, 0.5}), dice.in_box({-9, -9}, {9, 9}),
+              dice.between(-20, 20));
+    if (dice.below(5) == 0) fluid.x.back() = fluid.x.front();  // coincident
+  }
+  std::vector<Vec> walls;
+  for (std::size_t k = dice.below(30); k > 0; --k) walls.push_back(dice.in_box({-1, -1}, {1, 1}));
+
+  Solver whole(m, start_from(fluid), walls, {});
+  run_steps(whole, steps);
+  Solver first(m, start_from(fluid), walls, {2, ""});
+  run_steps(first, stop);
+  Solver second(m, first.state(), walls, {});
+  run_steps(second, steps - stop);
+  const SolverState a = whole.state();
+  const SolverState b = second.state();
+  for (const Field& field : kFields) {
+    const bool same = a.particles.*field.member == b.particles.*field.member;
+    RC_ASSERT(same);
+  }
+  RC_ASSERT(a.time == b.time);
+  RC_ASSERT(a.retired.size() == b.retired.size());
+}
+
+}  // namespace
+}  // namespace sluice

@@ -1,0 +1,175 @@
+#include "tests/sph/test_fluids.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace sluice {
+
+Method plain_method() {
+  Method m;
+  m.spacing = 0.1;
+  m.smoothing_length = 0.1;
+  m.reference_density = 1000.0;
+  m.sound_speed = 20.0;
+  m.precision = Precision::double_precision;
+  m.domain = {{-2.0, -2.0}, {2.0, 2.0}};
+  return m;
+}
+
+Method full_method() {
+  Method m = plain_method();
+  m.smoothing_length = 0.12;
+  m.gravity = {0.7, -9.81};
+  m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.13};
+  m.viscosity = ArtificialViscosity{0.06, 0.02};
+  m.wall_friction = WallFriction{0.09, 0.03};
+  m.reinitialisation = Reinitialisation{20};
+  return m;
+}
+
+Fluid random_block(Dice& dice, const Vec& corner, int columns, int rows, double spacing,
+                   double jitter, double speed, double excess) {
+  Fluid fluid;
+  const Vec one = Vec::Ones();
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const Vec place = corner + spacing * Vec(column + 0.5, row + 0.5);
+      const Vec shift = dice.in_box(-jitter * spacing * one, jitter * spacing * one);
+      const Vec velocity = dice.in_box(-speed * one, speed * one);
+      fluid.add(place + shift, velocity, dice.between(-excess, excess));
+    }
+  }
+  return fluid;
+}
+
+std::vector<Vec> walls_around(const Vec& corner, int columns, int rows, double spacing) {
+  constexpr int kLayers = 3;
+  std::vector<Vec> walls;
+  for (int row = -kLayers; row < rows; ++row) {
+    for (int column = -kLayers; column < columns + kLayers; ++column) {
+      if (row >= 0 && column >= 0 && column < columns) continue;
+      walls.emplace_back(corner + spacing * Vec(column + 0.5, row + 0.5));
+    }
+  }
+  return walls;
+}
+
+SolverState start_from(const Fluid& fluid) {
+  SolverState state;
+  Particles& p = state.particles;
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    p.x.push_back(fluid.x[i].x());
+    p.y.push_back(fluid.x[i].y());
+    p.vx.push_back(fluid.v[i].x());
+    p.vy.push_back(fluid.v[i].y());
+    p.density_excess.push_back(fluid.excess[i]);
+    p.id.push_back(static_cast<double>(i));
+  }
+  return state;
+}
+
+std::vector<double> by_id(const SolverState& state, std::vector<double> Particles::*field) {
+  const Particles& p = state.particles;
+  std::vector<double> values(p.size(), std::nan(""));
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    values.at(static_cast<std::size_t>(p.id[i])) = (p.*field)[i];
+  }
+  return values;
+}
+
+Fluid fluid_of(const SolverState& state) {
+  const auto x = by_id(state, &Particles::x);
+  const auto y = by_id(state, &Particles::y);
+  const auto vx = by_id(state, &Particles::vx);
+  const auto vy = by_id(state, &Particles::vy);
+  Fluid fluid;
+  for (std::size_t i = 0; i < x.size(); ++i) fluid.add({x[i], y[i]}, {vx[i], vy[i]});
+  fluid.excess = by_id(state, &Particles::density_excess);
+  return fluid;
+}
+
+void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what) {
+  for (const Field& field : kFields) {
+    const auto& one = a.particles.*field.member;
+    const auto& other = b.particles.*field.member;
+    ASSERT_EQ(one.size(), other.size()) << what << ", field " << field.name;
+    if (one.empty()) continue;
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0)
+        << what << ", field " << field.name;
+  }
+  EXPECT_EQ(a.step, b.step) << what;
+  EXPECT_EQ(std::memcmp(&a.time, &b.time, sizeof(double)), 0) << what << ", time";
+  EXPECT_EQ(std::memcmp(&a.time_step, &b.time_step, sizeof(double)), 0) << what << ", time step";
+  ASSERT_EQ(a.retired.size(), b.retired.size()) << what;
+  for (std::size_t k = 0; k < a.retired.size(); ++k) {
+    const Retired& one = a.retired[k];
+    const Retired& other = b.retired[k];
+    EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.x, one.y),
+              std::tie(other.id, other.cause, other.step, other.time, other.x, other.y))
+        << what << ", retired " << k;
+  }
+}
+
+void expect_near(std::span<const double> a, std::span<const double> b, double tolerance,
+                 const std::string& what) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  double worst = 0.0;
+  std::size_t where = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double error = std::abs(a[i] - b[i]);
+    if (error <= worst) continue;  // a NaN is worse than any number
+    worst = error;
+    where = i;
+    if (std::isnan(error)) break;
+  }
+  EXPECT_LE(worst, tolerance) << what << ": particle " << where << " has " << a[where]
+                              << ", expected " << b[where];
+}
+
+void expect_near(std::span<const Vec> a, std::span<const Vec> b, double tolerance,
+                 const std::string& what) {
+  const auto flat = [](std::span<const Vec> vectors) {
+    std::vector<double> numbers;
+    for (const Vec& v : vectors) numbers.insert(numbers.end(), {v.x(), v.y()});
+    return numbers;
+  };
+  expect_near(flat(a), flat(b), tolerance, what + " (x0, y0, x1, ...)");
+}
+
+void run_steps(Solver& solver, int steps) {
+  for (int n = 0; n < steps; ++n) solver.step();
+}
+
+FluidRates rates_at_start(Method m, const Fluid& fluid, const std::vector<Vec>& walls) {
+  m.integrator = Integrator::modified_leap_frog;
+  Solver solver(m, start_from(fluid), walls, {});
+  return rates_of_next_step(solver);
+}
+
+FluidRates rates_of_next_step(Solver& solver) {
+  solver.step();
+  const SolverState state = solver.state();
+  const Fluid full = fluid_of(state);
+  const auto vx_half = by_id(state, &Particles::vx_half);
+  const auto vy_half = by_id(state, &Particles::vy_half);
+  const auto half = by_id(state, &Particles::density_excess_half);
+  const double half_step = 0.5 * solver.time_step();
+  FluidRates rates;
+  for (std::size_t i = 0; i < full.size(); ++i) {
+    rates.acceleration.emplace_back((full.v[i] - Vec(vx_half[i], vy_half[i])) / half_step);
+    rates.density.push_back((full.excess[i] - half[i]) / half_step);
+  }
+  return rates;
+}
+
+std::string name_of(Integrator integrator) {
+  return integrator == Integrator::modified_leap_frog ? "leap-frog" : "kick-drift-kick";
+}
+
+std::string name_of(Precision precision) {
+  return precision == Precision::mixed ? "mixed" : "double";
+}
+
+}  // namespace sluice

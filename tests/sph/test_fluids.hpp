@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/sph/method.hpp"
+#include "engine/sph/particles.hpp"
+#include "engine/sph/solver.hpp"
+
+namespace sluice {
+
+/// Fluid particles in the order of their ids, SI units: what a test hands to a solver and reads
+/// back.
+struct Fluid {
+  std::vector<Vec> x;
+  std::vector<Vec> v;
+  std::vector<double> excess;  ///< rho - rho_0, kg/m^3
+
+  void add(const Vec& position, const Vec& velocity = Vec::Zero(), double density_excess = 0.0) {
+    x.push_back(position);
+    v.push_back(velocity);
+    excess.push_back(density_excess);
+  }
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+};
+
+/// Uniform numbers that are the same with every standard library.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : bits_(seed) {}
+  /// In [low, high).
+  [[nodiscard]] double between(double low, double high) {
+    return low + (high - low) * 0x1p-53 * static_cast<double>(bits_() >> 11U);
+  }
+  [[nodiscard]] Vec in_box(const Vec& low, const Vec& high) {
+    const double x = between(low.x(), high.x());
+    return {x, between(low.y(), high.y())};
+  }
+  [[nodiscard]] std::size_t below(std::size_t count) { return bits_() % count; }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+/// dx = h = 0.1 m, rho_0 = 1000 kg/m^3, c = 20 m/s; a domain of +-2 m; no term, no gravity, no
+/// walls. The numbers are chosen to differ from 1 and from each other.
+[[nodiscard]] Method plain_method();
+
+/// plain_method() with every term, gravity (0.7, -9.81) m/s^2 and smoothing length 0.12 m.
+[[nodiscard]] Method full_method();
+
+/// columns x rows particles at the cell centres of a lattice of spacing dx from `corner`, each
+/// moved by up to `jitter` dx, with velocities up to `speed` (m/s) and excesses up to `excess`
+/// (kg/m^3) in size.
+[[nodiscard]] Fluid random_block(Dice& dice, const Vec& corner, int columns, int rows,
+                                 double spacing, double jitter, double speed, double excess);
+
+/// Three layers of wall particles below and to both sides of a block that starts at `corner`.
+[[nodiscard]] std::vector<Vec> walls_around(const Vec& corner, int columns, int rows,
+                                            double spacing);
+
+/// A state at rest in time with ids 0, 1, ... in the order of the fluid.
+[[nodiscard]] SolverState start_from(const Fluid& fluid);
+
+/// The particles of a state in the order of their ids, which must be 0 ... N-1.
+[[nodiscard]] Fluid fluid_of(const SolverState& state);
+
+/// A field of a state in the order of ids.
+[[nodiscard]] std::vector<double> by_id(const SolverState& state,
+                                        std::vector<double> Particles::*field);
+
+/// Fails the test unless both states hold the same bits.
+void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what);
+
+/// Fails the test unless all of a and b agree to `tolerance`, absolute.
+void expect_near(std::span<const double> a, std::span<const double> b, double tolerance,
+                 const std::string& what);
+void expect_near(std::span<const Vec> a, std::span<const Vec> b, double tolerance,
+                 const std::string& what);
+
+void run_steps(Solver& solver, int steps);
+
+/// Rates by id.
+struct FluidRates {
+  std::vector<Vec> acceleration;  ///< m/s^2
+  std::vector<double> density;    ///< kg/(m^3 s)
+};
+
+/// What the engine sums for this fluid at rest in time, out of one leap-frog step.
+[[nodiscard]] FluidRates rates_at_start(Method m, const Fluid& fluid,
+                                        const std::vector<Vec>& walls);
+
+/// Makes one leap-frog step and returns the rates that it used: its last half kick is dt/2 times
+/// the rate.
+[[nodiscard]] FluidRates rates_of_next_step(Solver& solver);
+
+[[nodiscard]] std::string name_of(Integrator integrator);
+[[nodiscard]] std::string name_of(Precision precision);
+
+inline constexpr Integrator kIntegrators[] = {Integrator::modified_leap_frog,
+                                              Integrator::kick_drift_kick};
+inline constexpr Precision kPrecisions[] = {Precision::mixed, Precision::double_precision};
+inline constexpr KernelKind kKernels[] = {KernelKind::truncated_gaussian, KernelKind::wendland_c2};
+
+}  // namespace sluice

@@ -1,0 +1,108 @@
+#include "engine/sph/thread_team.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstddef>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+namespace sluice {
+namespace {
+
+TEST(ThreadTeam, CallsEveryTaskExactlyOnce) {
+  for (const int threads : {1, 2, 3, 5, 8}) {
+    ThreadTeam team(threads);
+    ASSERT_EQ(team.size(), threads);
+    for (const std::size_t tasks : {0, 1, 2, 3, 4, 7, 8, 9, 63, 64, 65, 1000, 4099}) {
+      // Not atomic: a task called twice at once is a race that the thread sanitizer sees.
+      std::vector<int> calls(tasks, 0);
+      team.run(tasks, [&](std::size_t task) { ++calls[task]; });
+      for (std::size_t task = 0; task < tasks; ++task) {
+        ASSERT_EQ(calls[task], 1) << threads << " threads, task " << task << " of " << tasks;
+      }
+    }
+  }
+}
+
+TEST(ThreadTeam, TakesZeroAndFewerThreadsForOne) {
+  for (const int threads : {0, -1, -100}) {
+    ThreadTeam team(threads);
+    EXPECT_EQ(team.size(), 1);
+    int calls = 0;
+    team.run(5, [&](std::size_t) { ++calls; });
+    EXPECT_EQ(calls, 5);
+  }
+}
+
+TEST(ThreadTeam, EachRunSeesAllThatTheRunBeforeWrote) {
+  ThreadTeam team(3);
+  constexpr std::size_t kTasks = 40;
+  constexpr long kRuns = 10000;
+  std::vector<long> value(kTasks);
+  std::iota(value.begin(), value.end(), 0L);
+  std::vector<long> next(kTasks);
+  for (long run = 0; run < kRuns; ++run) {
+    // Each task reads what another thread may have written in the last run.
+    team.run(kTasks, [&](std::size_t task) { next[task] = value[(task + 13) % kTasks] + 1; });
+    value.swap(next);
+  }
+  for (std::size_t task = 0; task < kTasks; ++task) {
+    const std::size_t origin = (task + 13 * static_cast<std::size_t>(kRuns)) % kTasks;
+    ASSERT_EQ(value[task], kRuns + static_cast<long>(origin));
+  }
+}
+
+TEST(ThreadTeam, UnequalTasksAreAllDoneWhenRunReturns) {
+  ThreadTeam team(4);
+  for (int run = 0; run < 30; ++run) {
+    std::vector<int> done(16, 0);
+    team.run(done.size(), [&](std::size_t task) {
+      if (task % 5 == 0) std::this_thread::sleep_for(std::chrono::microseconds(300));
+      done[task] = 1;
+    });
+    ASSERT_EQ(std::accumulate(done.begin(), done.end(), 0), 16);
+  }
+}
+
+TEST(ThreadTeam, EndsWhetherItsHelpersSpinSleepOrNeverWorked) {
+  for (int round = 0; round < 100; ++round) {
+    ThreadTeam team(1 + round % 5);
+    if (round % 3 != 0) team.run(10, [](std::size_t) {});
+    if (round % 10 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+TEST(ThreadTeam, WakesAfterItsHelpersFellAsleep) {
+  ThreadTeam team(3);
+  for (int round = 0; round < 10; ++round) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::vector<int> calls(100, 0);
+    team.run(calls.size(), [&](std::size_t task) { ++calls[task]; });
+    ASSERT_EQ(std::accumulate(calls.begin(), calls.end(), 0), 100);
+  }
+}
+
+TEST(ThreadTeam, TwoTeamsWorkSideBySide) {
+  const auto sum_of_squares = [] {
+    ThreadTeam team(2);
+    std::vector<long> square(500);
+    long total = 0;
+    for (int run = 0; run < 200; ++run) {
+      team.run(square.size(), [&](std::size_t k) { square[k] = static_cast<long>(k * k); });
+      total += std::accumulate(square.begin(), square.end(), 0L);
+    }
+    return total;
+  };
+  long other = 0;
+  std::thread beside([&] { other = sum_of_squares(); });
+  const long own = sum_of_squares();
+  beside.join();
+  // 200 sum_{k<500} k^2 = 200 * 499 * 500 * 999/6
+  EXPECT_EQ(own, 200L * 499 * 500 * 999 / 6);
+  EXPECT_EQ(other, own);
+}
+
+}  // namespace
+}  // namespace sluice
