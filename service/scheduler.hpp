@@ -6,6 +6,7 @@
 #include <string>
 
 #include "service/job_store.hpp"
+#include "service/sandbox.hpp"
 
 namespace sluice {
 
@@ -17,20 +18,26 @@ struct ServiceLimits {
   std::uint64_t memory_per_job = 0;          ///< bytes; 0: three quarters of the machine's
   std::uint64_t disk_per_job = 20ULL << 30;  ///< bytes
   double wall_seconds_per_attempt = 0.0;     ///< 0: none
-  double stalled_seconds = 60.0;             ///< without progress
+  double stalled_seconds = 60.0;             ///< without progress: the worker is ended
+  double stop_seconds = 45.0;  ///< a worker that was asked to stop is killed after that
   int crash_limit = 3;
   std::uint64_t disk_reserve =
       512ULL << 20;  ///< bytes left free on the data folder's disk: jobs pause before that
-  double retention_days = 0.0;  ///< ended jobs are deleted after that; 0: kept
+  double retention_days = 0.0;                  ///< ended jobs are deleted after that; 0: kept
+  Confinement confinement = Confinement::full;  ///< of the workers
 };
 
 /// Claims jobs, starts one worker process per attempt (`/proc/self/exe run FOLDER`), reads its JSON
 /// lines, and turns its end into a transition (design section 7). Owns one thread.
+///
+/// When the disk has less than its reserve left, running jobs are paused with the reason and none
+/// is started. They stay paused until someone resumes them: only a person knows whether there is
+/// room for good.
 class Scheduler {
  public:
-  /// At start: jobs that are marked running are adopted, when their folder's lock is still held by
-  /// a live worker of ours, else requeued. `worker` is the program to start, for tests; empty: this
-  /// one.
+  /// At start: jobs that are marked running are completed, requeued or failed by what their folder
+  /// says. Where a worker that outlived the last service still holds the folder's lock, that waits
+  /// until it is gone. `worker` is the program to start, for tests; empty: this one.
   Scheduler(JobStore& store, const std::filesystem::path& data, const ServiceLimits& limits,
             const std::filesystem::path& worker = {});
   /// Drains: asks every worker for a checkpoint, waits for them, and puts the jobs back into the
