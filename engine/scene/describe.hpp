@@ -235,6 +235,15 @@ void describe(Archive& a, Frames& frames) {
 }
 
 template <class Archive>
+void describe(Archive& a, Jitter& jitter) {
+  a.number("amplitude", jitter.amplitude,
+           {.about = "largest displacement in each direction, in particle distances",
+            .range = above(0, 0.5),
+            .need = Need::required});
+  a.integer("seed", jitter.seed, {.about = "another seed, another run", .range = from(0, 1e9)});
+}
+
+template <class Archive>
 void describe(Archive& a, Scales& scales) {
   a.number("height", scales.height,
            {.about = "h0 of T = t sqrt(g/h0), H = h/h0, P = p/(rho_0 g h0)",
@@ -297,6 +306,9 @@ void describe(Archive& a, Document& document) {
             [&](auto& child) { describe_material(child, document); });
   a.section("resolution", {.about = "how fine", .need = Need::required},
             [&](auto& child) { describe_resolution(child, document); });
+  a.section("jitter", scene.jitter,
+            {.about = "random displacement of the particles at the start, for ensembles",
+             .otherwise = "a regular lattice"});
   a.section("numerics", {.about = "the scheme; a term without its key is left out"},
             [&](auto& child) { describe_numerics(child, scene.method); });
   a.list("sensors", scene.sensors, {.about = "what is measured", .max = kMaxSensors});

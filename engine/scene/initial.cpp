@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 
 #include "engine/scene/cells.hpp"
@@ -72,6 +73,23 @@ void require_apart(const std::vector<CellSet>& earlier, const Vec& point, std::s
   }
 }
 
+/// A number in [-1, 1) that the arguments determine (SplitMix64, Steele et al. 2014).
+double noise(std::uint64_t seed, std::uint64_t counter) {
+  std::uint64_t z = seed * 0xD1342543DE82EF95U + (counter + 1) * 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+  z ^= z >> 31U;
+  return static_cast<double>(z >> 11U) * 0x1p-52 - 1.0;
+}
+
+void displace(const Jitter& jitter, double spacing, Particles& particles) {
+  const auto seed = static_cast<std::uint64_t>(jitter.seed);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles.x[i] += jitter.amplitude * spacing * noise(seed, 2 * i);
+    particles.y[i] += jitter.amplitude * spacing * noise(seed, 2 * i + 1);
+  }
+}
+
 void append(Particles& particles, const Vec& point, const Vec& velocity, double excess) {
   particles.id.push_back(static_cast<double>(particles.size()));
   particles.x.push_back(point.x());
@@ -107,6 +125,7 @@ void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
 InitialParticles create_particles(const Scene& scene) {
   InitialParticles result;
   fill(scene, Displacement(scene.obstacles, scene.method.spacing), result.state.particles);
+  if (scene.jitter) displace(*scene.jitter, scene.method.spacing, result.state.particles);
   if (scene.tank) result.walls = tank_walls(*scene.tank, scene.method);
   const std::vector<Vec> solid = obstacle_walls(scene.obstacles, scene.method);
   result.walls.insert(result.walls.end(), solid.begin(), solid.end());

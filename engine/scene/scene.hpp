@@ -67,6 +67,13 @@ struct Frames {
   double interval = 0.0;  ///< s
 };
 
+/// Displaces each particle at the start, so that runs of one scene make an ensemble: what follows
+/// an impact is chaotic, and a single run does not tell its spread.
+struct Jitter {
+  double amplitude = 0.0;  ///< largest displacement in each direction, in spacings
+  int seed = 1;
+};
+
 /// Lengths that make results dimensionless: T = t sqrt(g/h0), X = w/w0, H = h/h0, P = p/(rho_0 g
 /// h0).
 struct Scales {
@@ -83,6 +90,7 @@ struct Scene {
   std::vector<Shape> obstacles;
   Method method;
   std::vector<Sensor> sensors;
+  std::optional<Jitter> jitter;
   std::optional<Frames> frames;
   std::optional<Scales> scales;
   double end_time = 0.0;  ///< s; the run ends at the first step at or after it

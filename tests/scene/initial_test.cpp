@@ -220,6 +220,30 @@ TEST(InitialParticles, AreMissedWhereAnObstacleTakesAWholeRegion) {
   EXPECT_THROW((void)create_particles(parsed(text)), SceneError);
 }
 
+TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
+  json text = base_scene();
+  const Particles lattice = create_particles(parsed(text)).state.particles;
+  text["jitter"] = {{"amplitude", 0.1}, {"seed", 1}};
+  const Particles first = create_particles(parsed(text)).state.particles;
+  EXPECT_EQ(create_particles(parsed(text)).state.particles.x, first.x);
+  text["jitter"]["seed"] = 2;
+  const Particles second = create_particles(parsed(text)).state.particles;
+
+  ASSERT_EQ(first.size(), lattice.size());
+  double mean = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < lattice.size(); ++i) {
+    const Vec moved = (first.position(i) - lattice.position(i)) / 0.05;
+    EXPECT_LE(moved.cwiseAbs().maxCoeff(), 0.1 + 1e-12);
+    EXPECT_NE(first.x[i], second.x[i]);
+    mean += moved.sum() / (2.0 * static_cast<double>(lattice.size()));
+    largest = std::max(largest, moved.cwiseAbs().maxCoeff());
+  }
+  // A uniform variable: mean 0 to four standard errors, and nearly all of the range is used.
+  EXPECT_LT(std::abs(mean), 4.0 * 0.1 / std::sqrt(3.0 * 2.0 * static_cast<double>(lattice.size())));
+  EXPECT_GT(largest, 0.095);
+}
+
 RC_GTEST_PROP(InitialParticles, OfARectangleStayWithinHalfASpacingOfIt, ()) {
   const double width = *rc::gen::inRange(50, 3000) / 1000.0;
   const double height = *rc::gen::inRange(50, 3000) / 1000.0;
