@@ -54,13 +54,21 @@ class SurfaceHeightSampler final : public Sampler {
   double x_;
 };
 
-/// Position of the surge front, m: w of eq. 20.
+/// Position of the surge front, m: w of eq. 20. The front ends at the tank's right wall: what
+/// splashed over it and falls behind it is no front.
 class SurgeFrontSampler final : public Sampler {
  public:
+  explicit SurgeFrontSampler(const Scene& scene)
+      : end_(scene.tank ? scene.tank->width : std::numeric_limits<double>::infinity()) {}
   std::vector<Series::Column> columns() const override { return {{"value", "m"}}; }
   double sample(const Solver& solver, std::span<double> values) const override {
-    return store_probe(solver.surge_front(), values);
+    Probe front = solver.surge_front();
+    front.value = std::min(front.value, end_);
+    return store_probe(front, values);
   }
+
+ private:
+  double end_;
 };
 
 /// Kinetic, potential and internal energy of the fluid, J per metre of depth.
@@ -135,7 +143,7 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene) 
     case SensorKind::column_height:
       return std::make_unique<SurfaceHeightSampler>(clear_of_walls(sensor.position.x(), scene));
     case SensorKind::surge_front:
-      return std::make_unique<SurgeFrontSampler>();
+      return std::make_unique<SurgeFrontSampler>(scene);
     case SensorKind::energy:
       return std::make_unique<EnergySampler>();
     case SensorKind::arrival:
