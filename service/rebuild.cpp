@@ -1,0 +1,218 @@
+#include "service/rebuild.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "engine/scene/canonical.hpp"
+#include "engine/scene/estimate.hpp"
+#include "engine/scene/parse.hpp"
+#include "engine/store/digest.hpp"
+#include "engine/store/job_folder.hpp"
+#include "service/data_lock.hpp"
+#include "service/job_file.hpp"
+#include "service/job_ids.hpp"
+#include "service/worker_exit.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::uint64_t kLargestOutcome = std::uint64_t{1} << 24;
+constexpr int kMostDepth = 32;
+
+/// When a file was last written, Unix time in ms; 0 where there is none.
+std::int64_t write_time_ms(const fs::path& path) {
+  std::error_code error;
+  const fs::file_time_type time = fs::last_write_time(path, error);
+  if (error) return 0;
+  const auto since = fs::file_time_type::clock::to_sys(time).time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+/// What the last attempt that ended left behind.
+struct Ending {
+  std::string text;
+  int exit_code = 0;
+  std::string reason;
+  double end_time = 0.0;  // model time that it was to reach, s
+};
+
+/// Refuses what nests so deep that writing it again would use up the stack.
+json parse_flat(const std::string& text) {
+  return json::parse(text, [](int depth, json::parse_event_t, const json&) {
+    if (depth > kMostDepth) throw std::runtime_error("nested too deep");
+    return true;
+  });
+}
+
+std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& report) {
+  if (!is_there(paths.outcome())) return std::nullopt;
+  try {
+    Ending ending;
+    const json object = parse_flat(read_text(paths.outcome(), kLargestOutcome));
+    ending.text = object.dump();
+    ending.exit_code = object.at("exit_code").get<int>();
+    ending.reason = object.at("reason").get<std::string>();
+    ending.end_time = object.at("end_time").get<double>();
+    return ending;
+  } catch (const std::exception& error) {
+    report(paths.root(), fmt::format("outcome.json cannot be read, so the job is taken for one "
+                                     "that goes on: {}",
+                                     error.what()));
+    return std::nullopt;
+  }
+}
+
+std::optional<JobFile> read_file(const JobPaths& paths, const RebuildReport& report) {
+  try {
+    return read_job_file(paths.root());
+  } catch (const StorageError& error) {
+    report(paths.root(), fmt::format("its label, priority, threads and key are lost, and it is "
+                                     "paused: {}",
+                                     error.what()));
+    return std::nullopt;
+  }
+}
+
+Scene read_scene(const JobPaths& paths) {
+  const ParseResult result = parse_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
+  if (!result.scene) {
+    const Problem& problem = result.problems.front();
+    throw std::runtime_error(
+        fmt::format("scene.json is no scene: {} {}", problem.pointer, problem.message));
+  }
+  return *result.scene;
+}
+
+void describe_scene(Job& job, const Scene& scene) {
+  job.name = scene.name;
+  job.end_time = scene.end_time;
+  job.scene_hash = scene_hash(identity_text(scene));
+  job.estimate = estimate_json(estimate(scene));
+}
+
+void describe_file(Job& job, const JobFile& file) {
+  job.label = file.label;
+  job.priority = file.priority;
+  job.threads = file.threads;
+  if (file.created_ms > 0) job.created_ms = file.created_ms;
+}
+
+std::string where_it_goes_on(const JobPaths& paths) {
+  const std::vector<fs::path> checkpoints = paths.checkpoints();
+  return checkpoints.empty() ? "from the start"
+                             : fmt::format("from {}", checkpoints.front().filename().string());
+}
+
+JobState state_after(const Ending& ending, double end_time) {
+  const bool reached = ending.end_time >= end_time;
+  switch (ending.exit_code) {
+    case WorkerExit::checkpointed:
+    case WorkerExit::folder_locked:
+      return JobState::queued;
+    case WorkerExit::storage_failure:
+      return JobState::paused;
+    case WorkerExit::done:
+      return reached ? JobState::completed : JobState::queued;
+    default:
+      return reached ? JobState::failed : JobState::queued;
+  }
+}
+
+void decide_state(Job& job, const JobPaths& paths, const std::optional<JobFile>& file,
+                  const std::optional<Ending>& ending) {
+  if (ending) job.state = state_after(*ending, job.end_time);
+  if (file && file->held) job.state = *file->held;
+  if (!file && job.state == JobState::queued) job.state = JobState::paused;
+  if (ending) job.outcome = ending->text;
+  if (is_ended(job.state)) {
+    const fs::path last = ending ? paths.outcome() : job_file_path(paths.root());
+    job.ended_ms = std::max<std::int64_t>(write_time_ms(last), 1);
+    job.reason = ending ? ending->reason : "";
+  } else {
+    job.reason = fmt::format("its row was made anew from its folder; it goes on {}{}",
+                             where_it_goes_on(paths),
+                             job.state == JobState::paused ? " when it is resumed" : "");
+  }
+}
+
+/// The folders of jobs. Those that have run come first: of two with one key, the one that never
+/// ran is what a broken submission left.
+std::vector<fs::path> job_folders(const fs::path& data, const RebuildReport& report) {
+  std::vector<fs::path> folders;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data / "jobs")) {
+    const fs::path& path = entry.path();
+    if (entry.is_symlink() || !entry.is_directory() || !is_job_id(path.filename().string())) {
+      report(path, "no job folder: its name is not one of ours, or it is a link or a file");
+      continue;
+    }
+    folders.push_back(path);
+  }
+  std::sort(folders.begin(), folders.end());
+  std::stable_partition(folders.begin(), folders.end(),
+                        [](const fs::path& path) { return is_there(JobPaths(path).log()); });
+  return folders;
+}
+
+bool adopt_folder(JobStore& store, const fs::path& folder, const RebuildReport& report) {
+  const JobPaths paths(folder);
+  Job job;
+  job.id = folder.filename().string();
+  if (store.find(job.id)) return false;
+  job.created_ms = time_of_job_id(job.id).value_or(0);
+  describe_scene(job, read_scene(paths));
+  const std::optional<JobFile> file = read_file(paths, report);
+  if (file) describe_file(job, *file);
+  decide_state(job, paths, file, read_ending(paths, report));
+  job.updated_ms = std::max(job.created_ms, job.ended_ms);
+  return store.adopt(job, file ? file->key : "", file ? file->body_hash : "");
+}
+
+}  // namespace
+
+std::size_t rebuild_from_folders(JobStore& store, const fs::path& data,
+                                 const RebuildReport& report) {
+  const RebuildReport tell = report ? report : [](const fs::path&, const std::string&) {};
+  std::size_t count = 0;
+  for (const fs::path& folder : job_folders(data, tell)) {
+    try {
+      count += adopt_folder(store, folder, tell) ? 1 : 0;
+    } catch (const JobStoreError& error) {
+      if (error.fault() != JobStoreError::Fault::key_reused) throw;
+      tell(folder, fmt::format("not taken: {}", error.what()));
+    } catch (const std::exception& error) {
+      tell(folder, fmt::format("not taken: {}", error.what()));
+    }
+  }
+  return count;
+}
+
+std::optional<fs::path> set_aside_database(const fs::path& data) {
+  const DataLock lock(data);
+  const fs::path file = data / "jobs.sqlite";
+  if (!is_there(file)) return std::nullopt;
+  const fs::path aside = fmt::format("{}.bad-{}", file.string(), unix_time_ms());
+  try {
+    const fs::path journal = file.string() + "-journal";
+    if (is_there(journal)) fs::rename(journal, aside.string() + "-journal");
+    fs::rename(file, aside);
+  } catch (const fs::filesystem_error& error) {
+    throw JobStoreError(JobStoreError::Fault::io, error.what());
+  }
+  return aside;
+}
+
+}  // namespace sluice
