@@ -81,7 +81,7 @@ Checkpoint decode_checkpoint(ByteSpan image, const Expectation& expectation) {
 
 std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
                                        const Checkpoint& checkpoint, FileSystem& system) {
-  const std::filesystem::path path = folder / checkpoint_name(checkpoint.solver.step);
+  std::filesystem::path path = folder / checkpoint_name(checkpoint.solver.step);
   const Bytes image = naming(path, [&] { return encode_checkpoint(checkpoint); });
   publish(path, image, Durability::power_cut, system);
   return path;

@@ -86,6 +86,7 @@ template <class Archive, class List, class Member>
 void retired_column(Archive& archive, const std::string& name, List& list, Member Retired::*member,
                     const Label& label) {
   std::vector<decltype(to_file(Member{}))> column;
+  column.reserve(list.size());
   for (const Retired& retired : list) {
     column.push_back(to_file(retired.*member));
   }
