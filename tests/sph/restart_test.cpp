@@ -199,6 +199,22 @@ TEST_P(ThreadsAndRestart, TheOrderInWhichParticlesAreGivenChangesNoBit) {
   }
 }
 
+TEST_P(ThreadsAndRestart, CoincidentParticlesAreOrderedByTheirIds) {
+  const Method m = method();
+  Dice dice(13);
+  Fluid fluid = random_block(dice, {-0.3, -0.3}, 6, 6, 0.1, 0.1, 1.0, 10.0);
+  for (int k = 0; k < 7; ++k) {
+    fluid.add(fluid.x[20], dice.in_box({-1, -1}, {1, 1}), dice.between(-10, 10));
+  }
+  Solver expected(m, start_from(fluid), {}, {});
+  run_steps(expected, 3);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Solver solver(m, shuffled(start_from(fluid), seed), {}, {});
+    run_steps(solver, 3);
+    expect_same_bits(solver.state(), expected.state(), "order " + std::to_string(seed));
+  }
+}
+
 TEST_P(ThreadsAndRestart, TheOrderOfTheWallsMovesOnlyTheirPressures) {
   const Method m = method();
   std::vector<Vec> reversed = tank();
