@@ -209,6 +209,22 @@ TEST(Damage, IsLookedForWhenNothingTellsOfTheLastStop) {
   expect_refusal(Fault::damaged, [&] { const JobStore store(data.path()); });
 }
 
+TEST(Damage, ThatIsMetAtWorkIsLookedForAtTheNextStart) {
+  const DataFolder data;
+  {
+    JobStore store(data.path());
+    for (int i = 0; i < 50; ++i) (void)add_job(store);
+  }
+  damage_an_index(data.database());
+  {
+    const JobStore store(data.path());
+    JobFilter queued;
+    queued.state = JobState::queued;
+    expect_refusal(Fault::damaged, [&] { (void)store.list(queued); });
+  }
+  expect_refusal(Fault::damaged, [&] { const JobStore store(data.path()); });
+}
+
 /// Submits, claims and completes jobs for ever; writes a line for each step that was acknowledged.
 [[noreturn]] void work_until_killed(const fs::path& data, int out) {
   JobStore store(data);
