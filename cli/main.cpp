@@ -19,8 +19,8 @@ namespace sluice {
 namespace {
 
 // Verbs in the order of the help.
-constexpr std::array kVerbs{&add_run,     &add_validate, &add_plan,  &add_inspect,
-                            &add_sensors, &add_export,   &add_report};
+constexpr std::array kVerbs{&add_run,     &add_validate, &add_plan,   &add_inspect,
+                            &add_sensors, &add_export,   &add_report, &add_serve};
 
 int fail(ExitCode code, std::string_view message) {
   if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);

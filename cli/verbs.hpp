@@ -28,5 +28,6 @@ void add_inspect(CLI::App& app);
 void add_sensors(CLI::App& app);
 void add_export(CLI::App& app);
 void add_report(CLI::App& app);
+void add_serve(CLI::App& app);
 
 }  // namespace sluice

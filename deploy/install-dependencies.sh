@@ -16,6 +16,8 @@ build_packages=(
   libcli11-dev          # command line
   libxxhash-dev         # checksums of files
   libhwy-dev            # SIMD with run-time dispatch
+  libsqlite3-dev        # the service's job rows
+  libcpp-httplib-dev    # the service's answers
 )
 test_packages=(
   libgtest-dev libgmock-dev

@@ -1,0 +1,148 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "cli/notify.hpp"
+#include "cli/serve_options.hpp"
+#include "cli/stop_signals.hpp"
+#include "cli/verbs.hpp"
+#include "engine/store/errors.hpp"
+#include "service/api.hpp"
+#include "service/rebuild.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One JSON line on stderr. What came from outside is escaped: a line stays a line.
+void log_line(Json fields) {
+  using namespace std::chrono;
+  const auto now = time_point_cast<milliseconds>(system_clock::now());
+  const auto whole = floor<seconds>(now);
+  Json line{{"at", fmt::format("{:%FT%T}.{:03}Z", whole, (now - whole).count())}};
+  line.update(fields);
+  const std::string text = line.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
+  std::fputs(text.c_str(), stderr);
+}
+
+void log_request(const AccessRecord& record, AccessLog wanted) {
+  if (wanted == AccessLog::none) return;
+  const bool reads = record.method == "GET" || record.method == "HEAD";
+  if (wanted == AccessLog::changes && reads && record.status < 400) return;
+  log_line({{"event", "request"},
+            {"method", record.method},
+            {"path", record.path},
+            {"status", record.status},
+            {"seconds", record.seconds},
+            {"whole", record.whole},
+            {"peer", record.peer}});
+}
+
+HttpServer::Observer observer(Api& api, AccessLog wanted) {
+  return [&api, wanted](const AccessRecord& record) {
+    if (!record.stream) {
+      api.count_request(record.method, record.status,
+                        std::chrono::duration<double>(record.seconds));
+    }
+    log_request(record, wanted);
+  };
+}
+
+void set_rows_aside(const std::filesystem::path& data) {
+  if (const auto aside = set_aside_database(data)) {
+    log_line({{"event", "database_set_aside"}, {"file", aside->string()}});
+  }
+}
+
+/// Jobs whose rows are missing: all after a rebuild, or those whose submission was cut short
+/// between its folder and its row.
+void adopt_folders(JobStore& store, const std::filesystem::path& data) {
+  const auto report = [](const std::filesystem::path& folder, const std::string& why) {
+    log_line({{"event", "folder_passed_over"}, {"folder", folder.string()}, {"message", why}});
+  };
+  const std::size_t adopted = rebuild_from_folders(store, data, report);
+  if (adopted > 0) log_line({{"event", "folders_adopted"}, {"jobs", adopted}});
+}
+
+std::string base_url(const HttpOptions& options, int port) {
+  const bool v6 = options.host.find(':') != std::string::npos;
+  return fmt::format("http://{}{}{}:{}", v6 ? "[" : "", options.host, v6 ? "]" : "", port);
+}
+
+/// On stdout, for people; a program reads the address from the first line.
+void print_welcome(const ServeOptions& options, const std::string& url) {
+  const bool token = !options.http.guard.token.empty();
+  const std::string header =
+      token ? fmt::format(" -H \"Authorization: Bearer $(cat {})\"", options.token_file.string())
+            : "";
+  fmt::print(
+      "sluice serves {} at {}\n"
+      "  submit: curl{} --data-binary @scene.json {}/v1/jobs\n"
+      "  look:   curl{} {}/v1/jobs\n",
+      options.data.string(), url, header, url, header, url);
+  std::fflush(stdout);
+}
+
+void serve(ServeOptions& options) {
+  // First, so that no thread or child starts before the actions are set.
+  const StopSignals signals;
+  if (!options.token_file.empty()) options.http.guard.token = read_token_file(options.token_file);
+  if (options.rows == Rows::rebuild) set_rows_aside(options.data);
+  JobStore store(options.data);
+  adopt_folders(store, options.data);
+  Scheduler scheduler(store, options.data, options.limits);
+  Api api(store, scheduler, options.data);
+  HttpServer server(
+      options.http, [&api](const Request& request) { return api.handle(request); },
+      observer(api, options.log));
+
+  print_welcome(options, base_url(options.http, server.port()));
+  log_line({{"event", "ready"}, {"port", server.port()}});
+  notify_manager("READY=1");
+  signals.wait();
+
+  notify_manager("STOPPING=1");
+  log_line({{"event", "stopping"}, {"message", "workers write their checkpoints"}});
+  api.set_draining();
+  scheduler.drain();
+  server.stop();
+  log_line({{"event", "stopped"}});
+}
+
+ExitCode exit_code_of(JobStoreError::Fault fault) {
+  return fault == JobStoreError::Fault::in_use ? ExitCode::folder_locked
+                                               : ExitCode::storage_failure;
+}
+
+void serve_or_end(ServeOptions& options) {
+  try {
+    serve(options);
+  } catch (const JobStoreError& error) {
+    throw CommandEnd(exit_code_of(error.fault()), error.what());
+  } catch (const StorageError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    // The address or the token file.
+    throw CommandEnd(ExitCode::usage, error.what());
+  }
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app) {
+  auto options = std::make_shared<ServeOptions>();
+  CLI::App* verb = app.add_subcommand("serve", "Run jobs for others: the HTTP service");
+  add_serve_options(*verb, *options);
+  verb->footer(
+      "SIGTERM or Ctrl-C stops: running jobs write a checkpoint and go on at the next start; a "
+      "second one at once.\nExample: sluice serve --data jobs --port 8080");
+  verb->callback([options] { serve_or_end(*options); });
+}
+
+}  // namespace sluice

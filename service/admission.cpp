@@ -1,0 +1,102 @@
+#include "service/admission.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "engine/scene/initial.hpp"
+#include "engine/scene/parse.hpp"
+#include "service/problem.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Fluid-particle steps per second and core that the estimate of the time goes by.
+constexpr double kParticleStepsPerSecond = 15e6;
+
+/// Regions that overlap show only when they are filled. Larger scenes are left to the worker, which
+/// does it in its own memory.
+constexpr std::uint64_t kTrialParticles = 100'000;
+
+Json errors_of(const std::vector<Problem>& problems) {
+  Json errors = Json::array();
+  for (const Problem& problem : problems) {
+    errors.push_back({{"pointer", problem.pointer}, {"detail", problem.message}});
+  }
+  return errors;
+}
+
+[[noreturn]] void refuse(const std::vector<Problem>& problems) {
+  const std::size_t count = problems.size();
+  const Problem& first = problems.front();
+  const std::string_view where = first.pointer.empty() ? "the whole scene" : first.pointer;
+  throw ApiError(ProblemType::invalid_scene,
+                 fmt::format("{} problem{}; first, {}: {}", count, count == 1 ? "" : "s", where,
+                             first.message),
+                 {{"errors", errors_of(problems)}});
+}
+
+void check_overlap(const Scene& scene, const Estimate& estimate) {
+  if (estimate.fluid_particles + estimate.wall_particles > kTrialParticles) return;
+  try {
+    (void)create_particles(scene);
+  } catch (const SceneError& error) {
+    refuse({error.problem()});
+  }
+}
+
+void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
+  Json errors = Json::array();
+  const auto compare = [&](std::string_view name, std::uint64_t value, std::uint64_t limit) {
+    if (value > limit) errors.push_back({{"limit", name}, {"value", value}, {"allowed", limit}});
+  };
+  compare("particles", estimate.fluid_particles + estimate.wall_particles,
+          limits.particles_per_job);
+  compare("memory_bytes", estimate.memory_bytes, memory_limit(limits));
+  compare("disk_bytes", estimate.disk_bytes, limits.disk_per_job);
+  if (errors.empty()) return;
+  const Json& first = errors.front();
+  throw ApiError(ProblemType::over_limit,
+                 fmt::format("the scene needs {} = {}, this service allows {}",
+                             first["limit"].get<std::string>(), first["value"].dump(),
+                             first["allowed"].dump()),
+                 {{"errors", errors}});
+}
+
+}  // namespace
+
+Admitted admit_scene(std::string_view text, const ServiceLimits& limits) {
+  ParseResult result = parse_scene(text);
+  if (!result.scene) refuse(result.problems);
+  Admitted admitted{*std::move(result.scene), {}};
+  admitted.estimate = estimate(admitted.scene);
+  check_limits(admitted.estimate, limits);
+  check_overlap(admitted.scene, admitted.estimate);
+  return admitted;
+}
+
+Json estimate_document(const Estimate& estimate, int threads) {
+  Json document = Json::parse(estimate_json(estimate));
+  const double particle_steps =
+      static_cast<double>(estimate.fluid_particles) * static_cast<double>(estimate.steps);
+  document["seconds"] = particle_steps / (kParticleStepsPerSecond * std::max(threads, 1));
+  return document;
+}
+
+std::uint64_t memory_limit(const ServiceLimits& limits) {
+  if (limits.memory_per_job > 0) return limits.memory_per_job;
+  const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
+  const auto page = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
+  return pages * page / 4 * 3;
+}
+
+int thread_limit(const ServiceLimits& limits) {
+  if (limits.cores > 0) return limits.cores;
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+}  // namespace sluice

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "engine/scene/estimate.hpp"
+#include "engine/scene/scene.hpp"
+#include "service/scheduler.hpp"
+
+namespace sluice {
+
+/// A scene that this service takes, with what it will cost.
+struct Admitted {
+  Scene scene;
+  Estimate estimate;
+};
+
+/// Parses a scene and holds it against the limits. Throws ApiError: invalid_scene with every
+/// problem as {pointer, detail}, over_limit with every limit that it breaks.
+[[nodiscard]] Admitted admit_scene(std::string_view text, const ServiceLimits& limits);
+
+/// particles, steps, memory, disk and about how long it takes on `threads` threads.
+[[nodiscard]] nlohmann::ordered_json estimate_document(const Estimate& estimate, int threads);
+
+/// Bytes of memory that one job may take: the limit, or three quarters of the machine's.
+[[nodiscard]] std::uint64_t memory_limit(const ServiceLimits& limits);
+/// Threads that one job may take: the limit, or the machine's cores.
+[[nodiscard]] int thread_limit(const ServiceLimits& limits);
+
+}  // namespace sluice

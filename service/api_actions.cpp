@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "engine/scene/canonical.hpp"
+#include "engine/scene/json_text.hpp"
+#include "engine/scene/parse.hpp"
+#include "service/admission.hpp"
+#include "service/api_routes.hpp"
+#include "service/job_json.hpp"
+#include "service/query.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// 202 while a running worker has yet to obey.
+Response answer(const ApiContext& context, const Job& job) {
+  const bool pending = job.pending_stop != PendingStop::none;
+  return json_response(pending ? 202 : 200, job_document(job, context.scheduler.why_waiting(job)));
+}
+
+Response act(ApiContext& context, const std::string& id, JobAction action,
+             const JobChange& change) {
+  const Job job = context.store.apply(id, action, "", change);
+  context.scheduler.poke();
+  return answer(context, job);
+}
+
+Response act(ApiContext& context, const RouteRequest& request, JobAction action) {
+  QueryReader(request.http).finish();
+  if (!request.http.body.empty()) {
+    throw ApiError(ProblemType::bad_request, "this request has no body");
+  }
+  const Job job = find_job(context, request.parts[0]);
+  return act(context, job.id, action, {});
+}
+
+[[noreturn]] void refuse_body(std::string_view pointer, const std::string& detail) {
+  throw ApiError(ProblemType::bad_request, fmt::format("{}: {}", pointer, detail),
+                 {{"errors", Json::array({{{"pointer", pointer}, {"detail", detail}}})}});
+}
+
+/// The later end time of a resume, s; nothing when the body is empty or an empty object.
+std::optional<double> read_end_time(const std::string& body) {
+  if (body.empty()) return std::nullopt;
+  Problems problems;
+  const auto value = read_json(body, problems);
+  if (!value || !problems.empty()) {
+    const auto found = problems.take();
+    refuse_body("", found.empty() ? "is no JSON" : found.front().message);
+  }
+  if (!value->is_object()) refuse_body("", "must be an object, such as {\"end_time\": 3.0}");
+  std::optional<double> end_time;
+  for (const auto& [key, member] : value->items()) {
+    if (key != "end_time") refuse_body(at("", key), "is unknown: allowed here: end_time");
+    if (!member.is_number() || !std::isfinite(member.get<double>())) {
+      refuse_body("/end_time", "must be a number of seconds");
+    }
+    end_time = member.get<double>();
+  }
+  return end_time;
+}
+
+/// The scene's text with another end time, checked as a submitted one is.
+std::string extended_scene(const std::string& text, double end_time, const ServiceLimits& limits) {
+  Json scene = Json::parse(text);
+  scene["end_time"] = end_time;
+  std::string extended = scene.dump(2) + "\n";
+  (void)admit_scene(extended, limits);
+  return extended;
+}
+
+Response extend(ApiContext& context, const Job& job, double end_time) {
+  if (job.state == JobState::running || job.state == JobState::queued) {
+    throw ApiError(ProblemType::wrong_state,
+                   fmt::format("job {} is {}: its end time can be changed once it is paused or "
+                               "has ended",
+                               job.id, to_string(job.state)));
+  }
+  if (!(end_time > job.end_time)) {
+    refuse_body("/end_time",
+                fmt::format("must be later than the job's end time, {} s", shortest(job.end_time)));
+  }
+  JobFolder folder = JobFolder::open(context.paths(job.id).root());
+  const std::string before = folder.scene_text();
+  folder.publish_text(folder.paths().scene(),
+                      extended_scene(before, end_time, context.scheduler.limits()));
+  JobChange change;
+  change.end_time = end_time;
+  change.event_detail = Json{{"end_time", end_time}}.dump();
+  try {
+    const Job extended = context.store.apply(job.id, JobAction::resume, "", change);
+    return answer(context, extended);
+  } catch (...) {
+    folder.publish_text(folder.paths().scene(), before);
+    throw;
+  }
+}
+
+}  // namespace
+
+Response cancel_job(ApiContext& context, const RouteRequest& request) {
+  return act(context, request, JobAction::cancel);
+}
+
+Response pause_job(ApiContext& context, const RouteRequest& request) {
+  return act(context, request, JobAction::pause);
+}
+
+Response resume_job(ApiContext& context, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  const Job job = find_job(context, request.parts[0]);
+  const auto end_time = read_end_time(request.http.body);
+  if (!end_time) return act(context, job.id, JobAction::resume, {});
+  Response response = extend(context, job, *end_time);
+  context.scheduler.poke();  // now that the folder is free again
+  return response;
+}
+
+Response checkpoint_job(ApiContext& context, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  const Job job = find_job(context, request.parts[0]);
+  if (!context.scheduler.checkpoint_now(job.id)) {
+    throw ApiError(ProblemType::wrong_state,
+                   fmt::format("job {} is {}: only a running job can write a checkpoint", job.id,
+                               to_string(job.state)));
+  }
+  return json_response(202, job_document(job, ""));
+}
+
+}  // namespace sluice

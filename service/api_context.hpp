@@ -1,0 +1,50 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/store/job_folder.hpp"
+#include "service/job_store.hpp"
+#include "service/message.hpp"
+#include "service/metrics.hpp"
+#include "service/scheduler.hpp"
+#include "service/series_cache.hpp"
+#include "service/slots.hpp"
+
+namespace sluice {
+
+/// Requests that may hold a thread for long; the rest of the server's 64 threads stay free.
+inline constexpr int kMaxStreams = 16;
+inline constexpr int kMaxWaits = 24;
+
+/// What the routes share. Every member may be used from any thread.
+struct ApiContext {
+  ApiContext(JobStore& jobs, Scheduler& workers, std::filesystem::path folder)
+      : store(jobs), scheduler(workers), data(std::move(folder)), metrics(jobs.last_event()) {}
+
+  [[nodiscard]] JobPaths paths(const std::string& id) const { return JobPaths(data / "jobs" / id); }
+
+  JobStore& store;
+  Scheduler& scheduler;
+  std::filesystem::path data;
+  Metrics metrics;
+  SeriesCache series;
+  Slots streams{kMaxStreams};
+  Slots waits{kMaxWaits};
+  std::atomic<bool> draining = false;
+  std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice
+};
+
+/// A request with what its route's pattern caught, in the pattern's order.
+struct RouteRequest {
+  const Request& http;
+  std::vector<std::string> parts;
+};
+
+/// The job that the request names. Throws ApiError(no_such_job).
+[[nodiscard]] Job find_job(const ApiContext& context, const std::string& id);
+
+}  // namespace sluice

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/scene/schema.hpp"
+#include "service/api_routes.hpp"
+#include "service/query.hpp"
+#include "sluice/openapi_text.hpp"
+#include "sluice/version.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Response text_response(std::string body, std::string_view type) {
+  Response response;
+  response.body = std::move(body);
+  response.content_type = type;
+  return response;
+}
+
+}  // namespace
+
+Response show_index(ApiContext& /*context*/, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  return json_response(200, {{"service", "sluice"},
+                             {"version", kVersion},
+                             {"links",
+                              {{"jobs", "/v1/jobs"},
+                               {"schemas", "/v1/schemas"},
+                               {"openapi", "/openapi.json"},
+                               {"metrics", "/metrics"}}}});
+}
+
+Response show_openapi(ApiContext& /*context*/, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  return text_response(std::string(kOpenApiText), "application/json");
+}
+
+Response list_schemas(ApiContext& /*context*/, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  const Json scene{{"name", "scene"}, {"href", "/v1/schemas/scene"}};
+  return json_response(200, {{"schemas", Json::array({scene})}});
+}
+
+Response show_schema(ApiContext& /*context*/, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  if (request.parts[0] == "scene") {
+    return text_response(scene_schema_text(), "application/schema+json");
+  }
+  throw ApiError(ProblemType::not_found, "there is one schema: /v1/schemas/scene");
+}
+
+Response show_problem(ApiContext& /*context*/, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  const auto problems = all_problems();
+  const auto found = std::ranges::find(problems, request.parts[0], &ProblemEntry::slug);
+  if (found == problems.end()) {
+    throw ApiError(ProblemType::not_found, "no problem of this service has this type");
+  }
+  return json_response(200, {{"type", fmt::format("/problems/{}", found->slug)},
+                             {"title", found->title},
+                             {"status", found->status},
+                             {"advice", found->advice}});
+}
+
+Response show_livez(ApiContext& /*context*/, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  return json_response(200, {{"status", "alive"}});
+}
+
+Response show_readyz(ApiContext& context, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  if (context.draining) throw ApiError(ProblemType::draining, "the service is stopping");
+  (void)context.store.last_event();
+  return json_response(200, {{"status", "ready"}});
+}
+
+Response show_metrics(ApiContext& context, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  return text_response(context.metrics.text(context.store),
+                       "text/plain; version=0.0.4; charset=utf-8");
+}
+
+}  // namespace sluice

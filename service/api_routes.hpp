@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "service/api_context.hpp"
+#include "service/problem.hpp"
+
+namespace sluice {
+
+using Handler = Response (*)(ApiContext&, const RouteRequest&);
+
+/// A path with {parts}, and what answers there. HEAD goes to GET.
+struct Route {
+  std::string_view method;
+  std::string_view pattern;
+  Handler handler;
+};
+
+[[nodiscard]] std::span<const Route> all_routes();
+
+// api_submit.cpp
+Response submit_job(ApiContext& context, const RouteRequest& request);
+// api_jobs.cpp
+Response list_jobs(ApiContext& context, const RouteRequest& request);
+Response show_job(ApiContext& context, const RouteRequest& request);
+Response delete_job(ApiContext& context, const RouteRequest& request);
+// api_actions.cpp
+Response cancel_job(ApiContext& context, const RouteRequest& request);
+Response pause_job(ApiContext& context, const RouteRequest& request);
+Response resume_job(ApiContext& context, const RouteRequest& request);
+Response checkpoint_job(ApiContext& context, const RouteRequest& request);
+// api_events.cpp
+Response stream_events(ApiContext& context, const RouteRequest& request);
+// api_sensors.cpp
+Response list_sensors(ApiContext& context, const RouteRequest& request);
+Response show_sensor(ApiContext& context, const RouteRequest& request);
+// api_files.cpp
+Response show_report(ApiContext& context, const RouteRequest& request);
+Response show_log(ApiContext& context, const RouteRequest& request);
+Response list_files(ApiContext& context, const RouteRequest& request);
+Response send_file(ApiContext& context, const RouteRequest& request);
+// api_meta.cpp
+Response show_index(ApiContext& context, const RouteRequest& request);
+Response show_openapi(ApiContext& context, const RouteRequest& request);
+Response list_schemas(ApiContext& context, const RouteRequest& request);
+Response show_schema(ApiContext& context, const RouteRequest& request);
+Response show_problem(ApiContext& context, const RouteRequest& request);
+Response show_livez(ApiContext& context, const RouteRequest& request);
+Response show_readyz(ApiContext& context, const RouteRequest& request);
+Response show_metrics(ApiContext& context, const RouteRequest& request);
+
+}  // namespace sluice

@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "engine/scene/parse.hpp"
+#include "engine/scene/problems.hpp"
+#include "engine/store/file_system.hpp"
+#include "service/api_routes.hpp"
+#include "service/query.hpp"
+#include "service/series_view.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 2> kFilters{"none", "gaussian"};
+constexpr std::array<std::string_view, 2> kFormats{"json", "csv"};
+constexpr int kMostPoints = 200'000;
+
+enum class Format { json, csv };
+
+Scene scene_of(const ApiContext& context, const Job& job) {
+  const JobPaths paths = context.paths(job.id);
+  ParseResult result = parse_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
+  if (result.scene) return *std::move(result.scene);
+  throw ApiError(ProblemType::internal,
+                 fmt::format("the scene in the folder of job {} was altered", job.id));
+}
+
+const Series& find_series(const Scene& scene, const SeriesCache::Content& content,
+                          const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Sensor& sensor : scene.sensors) names.push_back(sensor.name);
+  if (std::ranges::find(names, name) == names.end()) {
+    throw ApiError(ProblemType::no_such_sensor,
+                   names.empty()
+                       ? "this job's scene has no sensors"
+                       : fmt::format("there is no sensor {}: {}", name, hint(name, names)));
+  }
+  if (content) {
+    for (const Series& series : *content) {
+      if (series.name == name) return series;
+    }
+  }
+  throw ApiError(
+      ProblemType::no_samples_yet,
+      fmt::format("sensor {} has no samples yet: the job has not run long enough", name));
+}
+
+/// The query decides, else what the client accepts.
+Format choose_format(const Request& request, const std::optional<std::string>& word) {
+  if (word) return *word == "csv" ? Format::csv : Format::json;
+  const std::string_view accept = request.header("accept");
+  const auto names = [&](std::string_view type) { return accept.find(type) != accept.npos; };
+  if (accept.empty() || names("*/*") || names("application/json") || names("application/*")) {
+    return Format::json;
+  }
+  if (names("text/csv") || names("text/*")) return Format::csv;
+  throw ApiError(ProblemType::not_acceptable,
+                 "a series comes as application/json or text/csv: accept one, or say format=");
+}
+
+struct SensorQuery {
+  SeriesQuery series;
+  bool dimensionless = false;
+  Format format = Format::json;
+};
+
+SensorQuery read_query(const Request& request) {
+  QueryReader query(request);
+  SensorQuery asked;
+  asked.series.from = query.number("from", -1e9, 1e9);
+  asked.series.to = query.number("to", -1e9, 1e9);
+  const bool gaussian = query.word("filter", kFilters).value_or("none") == "gaussian";
+  asked.series.tau = query.number("tau", 1e-9, 1e6);
+  const auto points = query.integer("max_points", 10, kMostPoints);
+  if (points) asked.series.max_points = static_cast<std::size_t>(*points);
+  asked.dimensionless = query.flag("dimensionless");
+  const auto format = query.word("format", kFormats);
+  if (gaussian && !asked.series.tau) query.reject("tau", "is needed with filter=gaussian, in s");
+  if (!gaussian && asked.series.tau) query.reject("tau", "goes with filter=gaussian");
+  const auto& [from, to] = std::pair(asked.series.from, asked.series.to);
+  if (from && to && *from > *to) query.reject("from", "must not be later than to");
+  query.finish();
+  asked.format = choose_format(request, format);
+  return asked;
+}
+
+void scale(SeriesQuery& query, const Scene& scene, const Series& series) {
+  try {
+    query.divisors = dimensionless_divisors(scene, series);
+  } catch (const std::invalid_argument& error) {
+    throw ApiError(ProblemType::not_dimensionless, error.what());
+  }
+}
+
+SeriesView view_of(const Series& series, const SeriesQuery& query, const Job& job) {
+  try {
+    return make_view(series, query,
+                     job.state == JobState::completed ? SeriesState::final : SeriesState::growing);
+  } catch (const std::length_error& error) {
+    throw ApiError(ProblemType::over_limit, error.what(),
+                   {{"errors", Json::array({{{"parameter", "tau"}, {"detail", error.what()}}})}});
+  }
+}
+
+Response render(const SeriesView& view, const SensorQuery& asked, const Job& job) {
+  Response response;
+  if (asked.format == Format::json) {
+    response.body = json_text(view, asked.series);
+  } else {
+    response.body = csv_text(view, asked.series);
+    response.content_type = "text/csv; charset=utf-8; header=present";
+    // What the JSON form says inside.
+    response.headers.emplace_back("Sluice-Samples", fmt::format("{}", view.samples));
+    if (view.provisional_after) {
+      response.headers.emplace_back("Sluice-Provisional-After",
+                                    fmt::format("{}", *view.provisional_after));
+    }
+  }
+  response.headers.emplace_back("Vary", "Accept");
+  response.headers.emplace_back("Sluice-Job-State", std::string(to_string(job.state)));
+  return response;
+}
+
+Json sensor_json(const Sensor& sensor, const Series* series) {
+  Json columns = Json::array();
+  if (series != nullptr) {
+    for (const Series::Column& column : series->columns) {
+      columns.push_back({{"name", column.name}, {"unit", column.unit}});
+    }
+  }
+  const bool empty = series == nullptr || series->size() == 0;
+  return Json{{"name", sensor.name},
+              {"kind", to_string(sensor.kind)},
+              {"interval", sensor.interval},
+              {"samples", series == nullptr ? 0 : series->size()},
+              {"first", empty ? Json(nullptr) : Json(series->time.front())},
+              {"last", empty ? Json(nullptr) : Json(series->time.back())},
+              {"columns", std::move(columns)}};
+}
+
+}  // namespace
+
+Response list_sensors(ApiContext& context, const RouteRequest& request) {
+  QueryReader(request.http).finish();
+  const Job job = find_job(context, request.parts[0]);
+  const Scene scene = scene_of(context, job);
+  const auto content = context.series.read(context.paths(job.id).series());
+  Json sensors = Json::array();
+  for (const Sensor& sensor : scene.sensors) {
+    const Series* series = nullptr;
+    for (std::size_t n = 0; content && n < content->size(); ++n) {
+      if ((*content)[n].name == sensor.name) series = &(*content)[n];
+    }
+    sensors.push_back(sensor_json(sensor, series));
+  }
+  return json_response(200, {{"sensors", std::move(sensors)}});
+}
+
+Response show_sensor(ApiContext& context, const RouteRequest& request) {
+  SensorQuery asked = read_query(request.http);
+  // The state before the samples: those of a job that has completed are final.
+  const Job job = find_job(context, request.parts[0]);
+  const Scene scene = scene_of(context, job);
+  const auto content = context.series.read(context.paths(job.id).series());
+  const Series& series = find_series(scene, content, request.parts[1]);
+  if (asked.dimensionless) scale(asked.series, scene, series);
+  return render(view_of(series, asked.series, job), asked, job);
+}
+
+}  // namespace sluice

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "engine/scene/canonical.hpp"
+#include "engine/scene/plan.hpp"
+#include "engine/store/digest.hpp"
+#include "engine/store/sha256.hpp"
+#include "service/admission.hpp"
+#include "service/api_routes.hpp"
+#include "service/job_file.hpp"
+#include "service/job_ids.hpp"
+#include "service/job_json.hpp"
+#include "service/query.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestKey = 128;
+constexpr std::size_t kLongestLabel = 100;
+
+/// What stands in the query and the headers beside the scene.
+struct SubmitOptions {
+  bool dry_run = false;
+  std::string label;
+  int priority = 0;
+  int threads = 1;
+  std::string key;
+};
+
+/// curl --data sends the second one; a body without a type is taken as what it is.
+void require_json(const Request& request) {
+  const std::string_view type = request.header("content-type");
+  const std::string_view media = type.substr(0, type.find_first_of("; \t"));
+  for (const std::string_view known :
+       {"", "application/json", "application/x-www-form-urlencoded", "text/plain"}) {
+    if (media == known) return;
+  }
+  throw ApiError(ProblemType::unsupported_media_type,
+                 "a scene is JSON: send Content-Type: application/json");
+}
+
+std::string read_key(const Request& request) {
+  const std::string_view key = request.header("idempotency-key");
+  if (key.empty() && !request.headers.contains("idempotency-key")) return {};
+  const bool plain = key.find_first_not_of(
+                         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
+                         "-_.:+/=\"") == std::string_view::npos;
+  if (!key.empty() && key.size() <= kLongestKey && plain) return std::string(key);
+  throw ApiError(
+      ProblemType::invalid_parameter,
+      fmt::format("Idempotency-Key must be 1 to {} of A-Z a-z 0-9 - _ . : + / = \"", kLongestKey),
+      {{"errors", Json::array({{{"parameter", "Idempotency-Key"},
+                                {"detail", "is too long or has other characters"}}})}});
+}
+
+SubmitOptions read_options(const ApiContext& context, const Request& request) {
+  QueryReader query(request);
+  SubmitOptions options;
+  options.dry_run = query.flag("dry_run");
+  options.label = query.text("label", kLongestLabel).value_or("");
+  options.priority = query.integer("priority", -1000, 1000).value_or(0);
+  options.threads =
+      query.integer("threads", 1, thread_limit(context.scheduler.limits())).value_or(1);
+  query.finish();
+  options.key = read_key(request);
+  return options;
+}
+
+/// Tells requests with one key apart: all that makes a difference to the job.
+std::string hash_of(const Request& request, const SubmitOptions& options) {
+  Sha256 hash;
+  const std::string rest =
+      fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads);
+  hash.update(std::as_bytes(std::span(rest)));
+  hash.update(std::as_bytes(std::span(request.body)));
+  return hash.finish();
+}
+
+Response accepted(const Job& job, bool repeated, const std::string& waiting) {
+  Response response = json_response(202, job_document(job, waiting));
+  response.headers.emplace_back("Location", fmt::format("/v1/jobs/{}", job.id));
+  if (repeated) response.headers.emplace_back("Idempotency-Replayed", "true");
+  return response;
+}
+
+/// A job's folder that goes away again unless the job gets its row.
+class NewFolder {
+ public:
+  NewFolder(const JobPaths& paths, std::string_view scene, const JobFile& file)
+      : root_(paths.root()) {
+    try {
+      const JobFolder folder = JobFolder::create(root_, scene);
+      write_job_file(root_, file);
+    } catch (...) {
+      remove();
+      throw;
+    }
+  }
+  ~NewFolder() {
+    if (!kept_) remove();
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  void remove() const {
+    std::error_code ignored;
+    std::filesystem::remove_all(root_, ignored);
+  }
+
+  std::filesystem::path root_;
+  bool kept_ = false;
+};
+
+Job new_job(ApiContext& context, const Admitted& admitted, const SubmitOptions& options) {
+  Job job;
+  job.id = context.store.new_id();
+  job.name = admitted.scene.name;
+  job.label = options.label;
+  job.priority = options.priority;
+  job.threads = options.threads;
+  job.created_ms = unix_time_ms();
+  job.scene_hash = scene_hash(identity_text(admitted.scene));
+  job.end_time = admitted.scene.end_time;
+  job.estimate = estimate_document(admitted.estimate, options.threads).dump();
+  return job;
+}
+
+Response make_job(ApiContext& context, const Request& request, const SubmitOptions& options) {
+  const ServiceLimits& limits = context.scheduler.limits();
+  const Admitted admitted = admit_scene(request.body, limits);
+  const std::string hash = options.key.empty() ? "" : hash_of(request, options);
+  const Job job = new_job(context, admitted, options);
+  // The folder comes first: a row without its folder could not run, a folder without its row is
+  // found at the next start.
+  NewFolder folder(context.paths(job.id), request.body,
+                   {job.label, job.priority, job.threads, job.created_ms, options.key, hash, {}});
+  const auto submitted = context.store.submit(job, options.key, hash, limits.queued_jobs);
+  if (!submitted.repeated) folder.keep();
+  context.scheduler.poke();
+  return accepted(submitted.job, submitted.repeated, context.scheduler.why_waiting(submitted.job));
+}
+
+Response show_plan(const ApiContext& context, const Request& request,
+                   const SubmitOptions& options) {
+  const Admitted admitted = admit_scene(request.body, context.scheduler.limits());
+  return json_response(200, {{"plan", Json::parse(plan_json(plan(admitted.scene)))},
+                             {"estimate", estimate_document(admitted.estimate, options.threads)}});
+}
+
+}  // namespace
+
+Response submit_job(ApiContext& context, const RouteRequest& request) {
+  require_json(request.http);
+  const SubmitOptions options = read_options(context, request.http);
+  if (options.dry_run) return show_plan(context, request.http, options);
+  if (options.key.empty()) return make_job(context, request.http, options);
+
+  const std::scoped_lock one_at_a_time(context.keyed_submits);
+  if (const auto known = context.store.find_by_key(options.key, hash_of(request.http, options))) {
+    return accepted(*known, true, context.scheduler.why_waiting(*known));
+  }
+  return make_job(context, request.http, options);
+}
+
+}  // namespace sluice
