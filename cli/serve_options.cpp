@@ -48,8 +48,27 @@ void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
   add_bytes("--disk-reserve", limits.disk_reserve,
             "Space that stays free: jobs pause before it is used; by default 512MB");
   verb.add_option("--max-wall-seconds", limits.wall_seconds_per_attempt,
-                  "Time of an attempt, after which the job goes back into the queue; 0: no limit")
+                  "Time of an attempt, after which the job is paused; 0: no limit")
       ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  verb.add_option("--stalled-seconds", limits.stalled_seconds,
+                  "A worker without progress for so long is ended and its job tried again")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  verb.add_option("--stop-seconds", limits.stop_seconds,
+                  "A worker that was asked to stop is killed after that")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  verb.add_option("--crash-limit", limits.crash_limit,
+                  "A job fails after so many lost workers in a row without a new checkpoint")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  verb.add_flag_callback(
+          "--no-sandbox", [&limits] { limits.confinement = Confinement::none; },
+          "Run workers without Landlock and seccomp, where these stand in the way")
       ->group(group);
   verb.add_option("--retention-days", limits.retention_days,
                   "Delete jobs that ended so long ago; 0: never")
