@@ -214,6 +214,19 @@ Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOpti
   return loop.run();
 }
 
+/// Without a checkpoint to go on from there is no attempt, but those who read events must hear of
+/// it.
+std::optional<Restored> find_checkpoint(JobFolder& folder, const Scene& scene, Reporter& reporter) {
+  try {
+    return folder.newest_checkpoint(expectation_of(scene));
+  } catch (const StorageError& error) {
+    reporter.event("failed", {{"exit_code", static_cast<int>(exit_code_of(error.fault()))},
+                              {"fault", to_string(error.fault())},
+                              {"message", error.what()}});
+    throw;
+  }
+}
+
 }  // namespace
 
 Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options,
@@ -221,7 +234,7 @@ Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options
   // Before the first event and until after the last, so that no signal that answers one is lost.
   SignalRequests signals;
   LoggingReporter logging(reporter, folder.paths().log());
-  std::optional<Restored> restored = folder.newest_checkpoint(expectation_of(scene));
+  std::optional<Restored> restored = find_checkpoint(folder, scene, logging);
   // An outcome of an earlier attempt says nothing about this one.
   std::error_code ignored;
   std::filesystem::remove(folder.paths().outcome(), ignored);

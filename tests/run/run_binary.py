@@ -213,7 +213,9 @@ class Restart(Sandbox):
         for checkpoint in (self.folder / "job").glob("checkpoint-*.h5"):
             checkpoint.write_bytes(checkpoint.read_bytes()[:1000])
         for _ in range(2):
-            self.assertIn("checkpoint", self.expect(6, "run", "job").stderr)
+            result = self.expect(6, "run", "job")
+            self.assertIn("checkpoint", result.stderr)
+            self.assertEqual(json.loads(result.stdout)["exit_code"], 6)
 
 
 class Signals(Sandbox):
