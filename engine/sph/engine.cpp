@@ -72,6 +72,7 @@ class Engine final : public Solver::Impl {
   void reinitialise();
   void run_sweep(typename Sweeps<T>::Sweep loop, const PairList* to_wall);
   void measure(double ahead);
+  void note_motion();
   void choose_time_step();
   [[nodiscard]] bool reinitialisation_due(std::uint64_t step) const;
 
@@ -525,6 +526,14 @@ void Engine<T>::reinitialise() {
 }
 
 template <typename T>
+void Engine<T>::note_motion() {
+  extremes.max_speed = std::sqrt(motion_.speed_sq);
+  extremes.min_density_excess = particle_count > 0 ? motion_.min_density_excess : 0.0;
+  extremes.max_density_excess = particle_count > 0 ? motion_.max_density_excess : 0.0;
+  extremes.finite = motion_.finite;
+}
+
+template <typename T>
 void Engine<T>::measure(double ahead) {
   motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
     sweeps_.updates.measure(p, method.domain, ahead, seen);
@@ -534,10 +543,7 @@ void Engine<T>::measure(double ahead) {
       seen.acceleration_sq = std::max(seen.acceleration_sq, p.ax[s] * p.ax[s] + p.ay[s] * p.ay[s]);
     }
   });
-  extremes.max_speed = std::sqrt(motion_.speed_sq);
-  extremes.min_density_excess = motion_.min_density_excess;
-  extremes.max_density_excess = motion_.max_density_excess;
-  extremes.finite = motion_.finite;
+  note_motion();
   if (method.integrator == Integrator::kick_drift_kick) {
     extremes.max_acceleration = std::sqrt(motion_.acceleration_sq);
   }
@@ -587,10 +593,7 @@ void Engine<T>::step_leap_frog() {
     sweeps_.updates.measure(p, method.domain, 0.0, seen);
     sweeps_.updates.write_pairs(p, scales(), pairs_);
   });
-  extremes.max_speed = std::sqrt(motion_.speed_sq);
-  extremes.min_density_excess = motion_.min_density_excess;
-  extremes.max_density_excess = motion_.max_density_excess;
-  extremes.finite = motion_.finite;
+  note_motion();
   time += time_step;
   ++step_count;
 }

@@ -75,9 +75,9 @@ struct Method {
   std::optional<WallFriction> wall_friction;
   std::optional<Reinitialisation> reinitialisation;
   WallPressure wall_pressure = WallPressure::extrapolated;
-  Box domain;  ///< a particle that leaves it is retired
-  std::optional<double>
-      wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent: no tank
+  Box domain;                      ///< a particle that leaves it is retired
+  std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
+                                   ///< no open tank
 
   /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
   [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }

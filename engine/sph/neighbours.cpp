@@ -1,13 +1,19 @@
 #include "engine/sph/neighbours.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace sluice {
 namespace {
 
-// Bounds are kept in single precision over the whole domain: wider than their rounding.
+// Of sums of bounds and reaches; the bounds themselves are rounded outwards.
 constexpr float kSlack = 1e-3F;
+
+/// Two steps of single precision farther: the value's own rounding, and that of a sum with it.
+float outwards(float value, float towards) {
+  return std::nextafter(std::nextafter(value, towards), towards);
+}
 
 std::uint32_t tile_code(const Grid::Tile& i, const Grid::Tile& j) {
   const int column = std::clamp(j.column - i.column, -1, 1) + 1;
@@ -75,10 +81,10 @@ void ClusterBounds::assign(const Grid& grid, const Layout& layout, double smooth
       if (s == kCluster * c) tile[c] = grid.tile({x[s], y[s]});
       const auto xs = static_cast<float>(x[s] / smoothing_length);
       const auto ys = static_cast<float>(y[s] / smoothing_length);
-      x_min[c] = std::min(x_min[c], xs);
-      x_max[c] = std::max(x_max[c], xs);
-      y_min[c] = std::min(y_min[c], ys);
-      y_max[c] = std::max(y_max[c], ys);
+      x_min[c] = std::min(x_min[c], outwards(xs, -kHuge));
+      x_max[c] = std::max(x_max[c], outwards(xs, kHuge));
+      y_min[c] = std::min(y_min[c], outwards(ys, -kHuge));
+      y_max[c] = std::max(y_max[c], outwards(ys, kHuge));
       reach[c] = std::max(reach[c], static_cast<float>(reach_of[s] / smoothing_length));
     }
   }

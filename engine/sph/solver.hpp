@@ -29,7 +29,8 @@ struct Execution {
   std::string simd_target;  ///< "" best of this machine, else "SSE4", "AVX2" or "AVX3"
 };
 
-/// Extremes over all particles at the last step, with the particle that holds each.
+/// Extremes over all particles at the last step; zero without particles. With the leap-frog the
+/// largest acceleration is known from the first step of a Solver on.
 struct Extremes {
   double max_speed = 0.0;            ///< m/s
   double max_acceleration = 0.0;     ///< m/s^2
@@ -85,8 +86,7 @@ class Solver {
 
   /// A copy of the state, particles in their order.
   [[nodiscard]] SolverState state() const;
-  /// Index into `state().particles` of the particle for which `extremes()` are broken first: not
-  /// finite, else fastest.
+  /// Id of a particle that is not finite, else of the fastest.
   [[nodiscard]] double offending_particle_id() const;
 
   /// Energy now. Sums run in particle order.
@@ -96,12 +96,13 @@ class Solver {
   /// Highest point at `x` where the fluid fills at least half of the kernel, m; weight 0 when there
   /// is none.
   [[nodiscard]] Probe surface_height_at(double x) const;
-  /// Largest x of any fluid particle below `y_max`, plus half a spacing, m.
+  /// Largest x of any fluid particle plus half a spacing, m; weight 0 without particles.
   [[nodiscard]] Probe surge_front() const;
   /// Distance of the nearest fluid particle to `point`, m; infinity when there is none within the
   /// support.
   [[nodiscard]] double distance_to_fluid(const Vec& point) const;
-  /// Wall pressures of the dummy particles, Pa, in the order of `walls`.
+  /// Pressures of the dummy particles, Pa, in the order of `walls`, as the last step summed them;
+  /// zero before the first step of this object.
   [[nodiscard]] std::vector<double> wall_pressures() const;
 
   /// Seconds of wall time spent in each pass since construction.

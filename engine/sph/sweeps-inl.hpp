@@ -80,8 +80,9 @@ struct TileShift {
   T y[9];
   explicit TileShift(T tile_size) {
     for (int code = 0; code < 9; ++code) {
+      const int row = code / 3;
       x[code] = -static_cast<T>(code % 3 - 1) * tile_size;
-      y[code] = -static_cast<T>(code / 3 - 1) * tile_size;
+      y[code] = -static_cast<T>(row - 1) * tile_size;
     }
   }
 };

@@ -1,10 +1,11 @@
 """Holds two reports of `sluice report --json` against what the two schemes must show.
 
-Usage: check_evidence.py PAPER.json RECOMMENDED.json. Prints a line per requirement; exit status 1
+Usage: check_evidence.py PAPER.json RECOMMENDED.json DISPLACED.json... Prints a line per requirement; exit status 1
 when one is not met or cannot be told.
 """
 
 import json
+import statistics
 import sys
 
 
@@ -49,11 +50,28 @@ def leaked_share(report):
     return leaked / (outcome["particles"] + leaked + outcome["retired"]["overtopped"])
 
 
+def sensors_of(report):
+    return {one["reference"]: one for one in (report.get("evidence") or {}).get("pressures", [])}
+
+
+def first_peak(report):
+    return path(sensors_of(report).get("P1"), "simulation", "peak", "value")
+
+
+def check_first_peak(checks, paper, displaced):
+    """What happens at the impact is chaotic: one run's peak is one draw of many."""
+    peaks = [first_peak(report) for report in displaced]
+    print("first peak at P1, P, tau = 2 ms: on the lattice " + f"{first_peak(paper):.3f}, displaced "
+          + ", ".join("none" if peak is None else f"{peak:.3f}" for peak in peaks))
+    median = None if None in peaks else statistics.median(peaks)
+    checks.between(f"paper's scheme: first peak at P1, median of {len(peaks)} displaced runs, P",
+                   median, 0.85 * 3.3, 1.15 * 3.3)
+
+
 def check_paper(checks, report):
     evidence = report.get("evidence") or {}
-    sensors = {one["reference"]: one for one in evidence.get("pressures", [])}
+    sensors = sensors_of(report)
     checks.between("paper's scheme: state completed", float(path(report, "outcome", "state") == "completed"), 1, 1)
-    checks.between("paper's scheme: first peak at P1, P", path(sensors.get("P1"), "simulation", "peak", "value"), 0.85 * 3.3, 1.15 * 3.3)
     for name in ("P1", "P2", "P3", "P4"):
         simulated = path(sensors.get(name), "simulation", "plateau")
         measured = path(sensors.get(name), "experiment", "plateau") or float("nan")
@@ -71,15 +89,20 @@ def check_recommended(checks, report):
     checks.between("recommended: particles that leaked", path(report, "outcome", "retired", "leaked"), 0, 0)
 
 
+def load(name):
+    with open(name, encoding="utf-8") as stream:
+        return json.load(stream)
+
+
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) < 4:
         print(__doc__)
         return 2
+    paper, recommended, *displaced = [load(name) for name in sys.argv[1:]]
     checks = Checks()
-    with open(sys.argv[1], encoding="utf-8") as stream:
-        check_paper(checks, json.load(stream))
-    with open(sys.argv[2], encoding="utf-8") as stream:
-        check_recommended(checks, json.load(stream))
+    check_first_peak(checks, paper, displaced)
+    check_paper(checks, paper)
+    check_recommended(checks, recommended)
     print(f"{checks.passed} passed, {checks.failed} failed")
     return 1 if checks.failed else 0
 
