@@ -117,7 +117,8 @@ std::optional<Job> claim_job(SqliteDb& db, int threads, const std::string& excep
       db,
       fmt::format("UPDATE jobs SET state = 'running', token = ?1, attempts = attempts + 1, "
                   "started_ms = ?2, updated_ms = ?2, reason = '' WHERE id = "
-                  "(SELECT id FROM jobs WHERE state = 'queued' AND threads <= ?3 AND id NOT IN "
+                  "(SELECT id FROM jobs INDEXED BY jobs_in_queue WHERE state = 'queued' AND "
+                  "threads <= ?3 AND id NOT IN "
                   "(SELECT value FROM json_each(?4)) ORDER BY priority DESC, id LIMIT 1) "
                   "RETURNING {}",
                   job_columns()),

@@ -14,6 +14,7 @@
 #include "engine/scene/parse.hpp"
 #include "engine/store/digest.hpp"
 #include "engine/store/job_folder.hpp"
+#include "service/admission.hpp"
 #include "service/data_lock.hpp"
 #include "service/job_file.hpp"
 #include "service/job_ids.hpp"
@@ -97,11 +98,12 @@ Scene read_scene(const JobPaths& paths) {
   return *result.scene;
 }
 
+/// Needs the job's threads.
 void describe_scene(Job& job, const Scene& scene) {
+  job.estimate = estimate_document(estimate(scene), job.threads).dump();
   job.name = scene.name;
   job.end_time = scene.end_time;
   job.scene_hash = scene_hash(identity_text(scene));
-  job.estimate = estimate_json(estimate(scene));
 }
 
 void describe_file(Job& job, const JobFile& file) {
@@ -173,9 +175,10 @@ bool adopt_folder(JobStore& store, const fs::path& folder, const RebuildReport& 
   job.id = folder.filename().string();
   if (store.find(job.id)) return false;
   job.created_ms = time_of_job_id(job.id).value_or(0);
-  describe_scene(job, read_scene(paths));
+  const Scene scene = read_scene(paths);
   const std::optional<JobFile> file = read_file(paths, report);
   if (file) describe_file(job, *file);
+  describe_scene(job, scene);
   decide_state(job, paths, file, read_ending(paths, report));
   job.updated_ms = std::max(job.created_ms, job.ended_ms);
   return store.adopt(job, file ? file->key : "", file ? file->body_hash : "");
