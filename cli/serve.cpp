@@ -1,5 +1,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <chrono>
 #include <cstdio>
@@ -89,7 +90,16 @@ void print_welcome(const ServeOptions& options, const std::string& url) {
   std::fflush(stdout);
 }
 
+/// Has freed memory go back to the system. By default glibc keeps a heap for each of many threads,
+/// and keeps in it what large answers took.
+void bound_memory() {
+  mallopt(M_ARENA_MAX, 2);
+  mallopt(M_MMAP_THRESHOLD, 256 * 1024);
+  mallopt(M_TRIM_THRESHOLD, 1024 * 1024);
+}
+
 void serve(ServeOptions& options) {
+  bound_memory();
   // First, so that no thread or child starts before the actions are set.
   const StopSignals signals;
   if (!options.token_file.empty()) options.http.guard.token = read_token_file(options.token_file);

@@ -63,6 +63,7 @@ std::optional<std::vector<std::string>> match(std::string_view pattern, std::str
       return std::nullopt;
     }
   }
+  if (!path.empty()) return std::nullopt;
   return parts;
 }
 

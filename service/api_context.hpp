@@ -3,6 +3,7 @@
 #include <atomic>
 #include <filesystem>
 #include <mutex>
+#include <semaphore>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ namespace sluice {
 /// Requests that may hold a thread for long; the rest of the server's 64 threads stay free.
 inline constexpr int kMaxStreams = 16;
 inline constexpr int kMaxWaits = 24;
+/// Series that are filtered and written as text at once: what that takes in memory is bounded.
+inline constexpr int kMaxViews = 4;
 
 /// What the routes share. Every member may be used from any thread.
 struct ApiContext {
@@ -34,6 +37,7 @@ struct ApiContext {
   SeriesCache series;
   Slots streams{kMaxStreams};
   Slots waits{kMaxWaits};
+  std::counting_semaphore<kMaxViews> views{kMaxViews};
   std::atomic<bool> draining = false;
   std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice
 };

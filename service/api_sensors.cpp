@@ -126,6 +126,18 @@ Response render(const SeriesView& view, const SensorQuery& asked, const Job& job
   return response;
 }
 
+/// One of the few that make a view, for the life of this object; waits for it.
+class Turn {
+ public:
+  explicit Turn(ApiContext& context) : context_(&context) { context_->views.acquire(); }
+  ~Turn() { context_->views.release(); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  ApiContext* context_;
+};
+
 Json sensor_json(const Sensor& sensor, const Series* series) {
   Json columns = Json::array();
   if (series != nullptr) {
@@ -169,6 +181,7 @@ Response show_sensor(ApiContext& context, const RouteRequest& request) {
   const auto content = context.series.read(context.paths(job.id).series());
   const Series& series = find_series(scene, content, request.parts[1]);
   if (asked.dimensionless) scale(asked.series, scene, series);
+  const Turn turn(context);
   return render(view_of(series, asked.series, job), asked, job);
 }
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "engine/store/file_system.hpp"
 #include "service/http_range.hpp"
@@ -186,7 +187,8 @@ class Formatter final : public httplib::Server {
             return true;
           });
     } else if (!response.content_type.empty()) {
-      out.set_content(response.body, response.content_type);
+      out.body = std::move(response.body);
+      out.set_header("Content-Type", response.content_type);
     }
   }
 

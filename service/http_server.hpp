@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,11 +16,12 @@ struct HttpOptions {
   std::string host = "127.0.0.1";
   int port = 8080;  ///< 0: any free one
   int threads = 64;
-  int connections = 512;        ///< beyond it the one that has waited longest is closed
-  int large_answers = 16;       ///< that are sent at once: files and long bodies
-  double arrival_seconds = 10;  ///< for a whole request, from its first byte
-  double idle_seconds = 30;     ///< between requests
-  double stall_seconds = 10;    ///< without a byte taken by the client
+  int connections = 512;                ///< beyond it the one that has waited longest is closed
+  int large_answers = 24;               ///< that are sent at once: files and long bodies
+  std::int64_t large_bytes = 32 << 20;  ///< of the bodies of those together
+  double arrival_seconds = 10;          ///< for a whole request, from its first byte
+  double idle_seconds = 30;             ///< between requests
+  double stall_seconds = 10;            ///< without a byte taken by the client
   HttpLimits limits;
   GuardOptions guard;
 };
