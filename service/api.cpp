@@ -91,7 +91,8 @@ Response answer_other_method(const Request& request, const std::set<std::string_
 }
 
 Response route(ApiContext& context, const Request& request) {
-  const std::string_view method = request.method == "HEAD" ? "GET" : request.method;
+  const std::string_view method =
+      request.method == "HEAD" ? std::string_view("GET") : std::string_view(request.method);
   std::set<std::string_view> methods;
   for (const Route& candidate : kRoutes) {
     auto parts = match(candidate.pattern, request.path);
