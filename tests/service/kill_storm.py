@@ -33,7 +33,7 @@ HOST = "127.0.0.1"
 def scene(kind):
     """A dam break of about 110 particles; one to three seconds of work, by kind."""
     return {
-        "name": f"storm {kind}",
+        "name": f"storm-{kind}",
         "tank": {"width": 1.61, "height": 0.6},
         "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.6, 0.3]}],
         "gravity": [0, -9.81],
