@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "engine/scene/canonical.hpp"
@@ -69,8 +70,19 @@ std::string extended_scene(const std::string& text, double end_time, const Servi
   Json scene = Json::parse(text);
   scene["end_time"] = end_time;
   std::string extended = scene.dump(2) + "\n";
+  if (extended.size() > kMaxSceneBytes) extended = scene.dump();
   (void)admit_scene(extended, limits);
   return extended;
+}
+
+/// Writes the later end time into the job's scene and returns the text before. The folder is free
+/// again afterwards: a worker needs it as soon as the job is queued.
+std::string replace_end_time(const ApiContext& context, const Job& job, double end_time) {
+  JobFolder folder = JobFolder::open(context.paths(job.id).root());
+  std::string before = folder.scene_text();
+  folder.publish_text(folder.paths().scene(),
+                      extended_scene(before, end_time, context.scheduler.limits()));
+  return before;
 }
 
 Response extend(ApiContext& context, const Job& job, double end_time) {
@@ -84,17 +96,15 @@ Response extend(ApiContext& context, const Job& job, double end_time) {
     refuse_body("/end_time",
                 fmt::format("must be later than the job's end time, {} s", shortest(job.end_time)));
   }
-  JobFolder folder = JobFolder::open(context.paths(job.id).root());
-  const std::string before = folder.scene_text();
-  folder.publish_text(folder.paths().scene(),
-                      extended_scene(before, end_time, context.scheduler.limits()));
+  const std::scoped_lock one_at_a_time(context.extensions);
+  const std::string before = replace_end_time(context, job, end_time);
   JobChange change;
   change.end_time = end_time;
   change.event_detail = Json{{"end_time", end_time}}.dump();
   try {
-    const Job extended = context.store.apply(job.id, JobAction::resume, "", change);
-    return answer(context, extended);
+    return answer(context, context.store.apply(job.id, JobAction::resume, "", change));
   } catch (...) {
+    JobFolder folder = JobFolder::open(context.paths(job.id).root());
     folder.publish_text(folder.paths().scene(), before);
     throw;
   }
@@ -116,7 +126,7 @@ Response resume_job(ApiContext& context, const RouteRequest& request) {
   const auto end_time = read_end_time(request.http.body);
   if (!end_time) return act(context, job.id, JobAction::resume, {});
   Response response = extend(context, job, *end_time);
-  context.scheduler.poke();  // now that the folder is free again
+  context.scheduler.poke();
   return response;
 }
 

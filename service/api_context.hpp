@@ -39,6 +39,7 @@ struct ApiContext {
   Slots waits{kMaxWaits};
   std::counting_semaphore<kMaxViews> views{kMaxViews};
   std::atomic<bool> draining = false;
+  std::mutex extensions;     ///< one at a time, because each writes its job's scene before its row
   std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice
 };
 

@@ -238,7 +238,7 @@ Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options
   // An outcome of an earlier attempt says nothing about this one.
   std::error_code ignored;
   std::filesystem::remove(folder.paths().outcome(), ignored);
-  const Outcome outcome =
+  Outcome outcome =
       restored ? run_from_checkpoint(folder, scene, options, signals, logging, *std::move(restored))
                : run_from_scene(folder, scene, options, signals, logging);
   report_outcome(outcome, logging);

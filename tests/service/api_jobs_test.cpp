@@ -1,3 +1,4 @@
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <thread>
@@ -163,6 +164,24 @@ TEST(ApiJobs, ExtendsOnlyToALaterTimeAndOnlyJobsThatDoNotRun) {
   const std::string running = service.submit_in(JobState::running);
   expect_problem(service.post("/v1/jobs/" + running + "/resume", R"({"end_time": 1})"), 409,
                  "wrong-state");
+}
+
+TEST(ApiJobsThreads, OfTwoExtensionsAtOnceOneHoldsInRowAndScene) {
+  Service service;
+  const std::string id = service.submit_in(JobState::completed);
+  const std::string target = "/v1/jobs/" + id + "/resume";
+  std::atomic<int> taken = 0;
+  std::vector<std::thread> clients;
+  for (int n = 1; n <= 8; ++n) {
+    clients.emplace_back([&, n] {
+      const std::string body = R"({"end_time": )" + std::to_string(n) + "}";
+      taken += service.post(target, body).status == 200 ? 1 : 0;
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  EXPECT_EQ(taken, 1);
+  const Json scene = Json::parse(read_file(service.data.job(id) / "scene.json"));
+  EXPECT_EQ(scene["end_time"], service.store.find(id).value().end_time);
 }
 
 TEST(ApiJobs, DeletesOnlyWhatHasEndedAndItsFolderWithIt) {

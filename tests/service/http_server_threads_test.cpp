@@ -15,8 +15,6 @@
 namespace sluice::test {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Says what it was asked: the path, or a long text, or a file, or a failure.
 Response echo(const Request& request) {
   if (request.path == "/fail") throw std::runtime_error("on purpose");
@@ -104,12 +102,10 @@ TEST(HttpServerThreads, TakesARequestByteByByte) {
   EXPECT_EQ(text_of(client.answer()), "POST / hello");
 }
 
-TEST(HttpServerThreads, AnswersAPostWithoutABodyAtOnce) {
+TEST(HttpServerThreads, AnswersAPostWithoutABody) {
   Server server;
-  const auto start = Clock::now();
-  const std::string answer = server.ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  EXPECT_EQ(text_of(answer), "POST / ");
-  EXPECT_LT(Clock::now() - start, std::chrono::seconds(4)) << "the library alone waits five";
+  // The library alone waits for five seconds and answers 400.
+  EXPECT_EQ(text_of(server.ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n")), "POST / ");
 }
 
 TEST(HttpServerThreads, AsksForABodyThatTheClientHoldsBack) {
@@ -318,8 +314,7 @@ TEST(HttpServerThreads, AFailingHandlerIsAProblemNotACrash) {
 TEST(HttpServerThreads, WhatAClientSendsCannotForgeWhereItComesFrom) {
   Server server;
   EXPECT_EQ(status_of(server.ask(get("/", "REMOTE_ADDR: 10.0.0.1\r\nREMOTE_PORT: 1\r\n"))), 200);
-  // The server notes a request after it has answered.
-  wait_until("the server to note it", [&] { return !server.seen().empty(); });
+  ASSERT_EQ(server.seen().size(), 1U);
   EXPECT_TRUE(server.seen().front().peer.starts_with("127.0.0.1:"));
 }
 

@@ -173,6 +173,11 @@ class Storm:
             count += len(answer["jobs"])
         return count
 
+    def pause(self):
+        """Seconds to the next kill: mostly long enough that it meets runs on their way, now and
+        then so short that it meets processes that have only begun."""
+        return self.random.uniform(0.2, 1.5) if self.random.random() < 0.75 else 0.02
+
     def rage(self):
         self.service.start()
         while self.killed.total() < self.kills_wanted:
@@ -181,7 +186,7 @@ class Storm:
             if len(self.kind_of) < self.jobs_wanted or self.unfinished() == 0:
                 self.submit_one()
                 self.submit_one()
-            time.sleep(self.random.uniform(0, 0.4))
+            time.sleep(self.pause())
             self.kill_something()
         while len(self.kind_of) < self.jobs_wanted:
             self.submit_one()
@@ -244,9 +249,10 @@ def main():
     for problem in problems:
         print(problem)
     (attempts,), = storm.rows("SELECT sum(attempts) FROM jobs")
+    (resumed,), = storm.rows("SELECT count(*) FROM events WHERE name = 'resumed'")
     print(f"{storm.killed['worker']} kills of workers, {storm.killed['service']} of the service, "
-          f"{len(storm.kind_of)} jobs, {attempts} attempts, {time.monotonic() - begun:.0f} s: "
-          f"{len(problems)} problems")
+          f"{len(storm.kind_of)} jobs, {attempts} attempts, {resumed} of them from a checkpoint, "
+          f"{time.monotonic() - begun:.0f} s: {len(problems)} problems")
     if problems:
         print((folder / "serve.log").read_text(errors="replace")[-4000:])
         return 1

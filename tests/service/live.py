@@ -109,6 +109,11 @@ class Server:
                 pass
         return children
 
+    def is_sanitized(self):
+        """Whether the program was built with a sanitizer, which takes memory and time of its own."""
+        with open(f"/proc/{self.process.pid}/maps", encoding="utf-8") as stream:
+            return re.search(r"lib[a-z]*san\.so", stream.read()) is not None
+
     def resident_bytes(self):
         with open(f"/proc/{self.process.pid}/status", encoding="ascii") as stream:
             for line in stream:

@@ -29,6 +29,16 @@
 namespace sluice::test {
 namespace {
 
+/// In the child: no exception may bring it back into the other tests.
+[[noreturn]] void attempt_and_exit(Sandbox& sandbox, const std::function<long()>& action) noexcept {
+  if (sandbox.enter() != 0) ::_exit(255);
+  ::_exit(action() >= 0 ? 0 : errno);
+}
+
+bool is_missing(std::string_view part) {
+  return Sandbox::missing().find(part) != std::string::npos;
+}
+
 /// What a worker could try, each in a child of its own that has entered the sandbox.
 class SandboxTest : public ::testing::Test {
  protected:
@@ -36,20 +46,13 @@ class SandboxTest : public ::testing::Test {
     std::filesystem::create_directories(inside_);
     write_file(outside_, "secret");
   }
-  void need(std::string_view part) {
-    if (Sandbox::missing().find(part) != std::string::npos) {
-      GTEST_SKIP() << "this system has no " << part;
-    }
-    if (SLUICE_SANITIZED && part == "seccomp") GTEST_SKIP() << "sanitizers trace their process";
-  }
   /// The errno that `action` leaves inside, 0 when it succeeds (returns 0 or more).
   int tried(const std::function<long()>& action) {
     const FileDescriptor program(::open("/proc/self/exe", O_PATH | O_CLOEXEC));
     Sandbox sandbox(inside_, program.get());
     const pid_t child = ::fork();
     if (child == 0) {
-      if (sandbox.enter() != 0) ::_exit(255);
-      ::_exit(action() >= 0 ? 0 : errno);
+      attempt_and_exit(sandbox, action);
     }
     int status = 0;
     ::waitpid(child, &status, 0);
@@ -76,8 +79,24 @@ TEST_F(SandboxTest, WritesReadsAndRenamesInTheJobsFolder) {
   EXPECT_EQ(read_file(inside_ / "b"), "x");
 }
 
-TEST_F(SandboxTest, WritesNowhereElse) {
-  need("Landlock");
+class LandlockTest : public SandboxTest {
+ protected:
+  void SetUp() override {
+    SandboxTest::SetUp();
+    if (is_missing("Landlock")) GTEST_SKIP() << "this system has no Landlock";
+  }
+};
+
+class SeccompTest : public SandboxTest {
+ protected:
+  void SetUp() override {
+    SandboxTest::SetUp();
+    if (is_missing("seccomp")) GTEST_SKIP() << "this system has no seccomp";
+    if (SLUICE_SANITIZED) GTEST_SKIP() << "sanitizers trace their process: no filter with them";
+  }
+};
+
+TEST_F(LandlockTest, WritesNowhereElse) {
   EXPECT_EQ(tried_to_open(outside_, O_WRONLY), EACCES);
   EXPECT_EQ(tried_to_open(data_.path() / "new", O_WRONLY | O_CREAT), EACCES);
   EXPECT_EQ(tried_to_open(inside_ / ".." / "new", O_WRONLY | O_CREAT), EACCES);
@@ -86,29 +105,25 @@ TEST_F(SandboxTest, WritesNowhereElse) {
   EXPECT_EQ(read_file(outside_), "secret");
 }
 
-TEST_F(SandboxTest, IsNotLedAstrayByLinks) {
-  need("Landlock");
+TEST_F(LandlockTest, IsNotLedAstrayByLinks) {
   std::filesystem::create_symlink(outside_, inside_ / "link");
   EXPECT_EQ(tried_to_open(inside_ / "link", O_WRONLY), EACCES);
   EXPECT_NE(tried([&] { return ::link(outside_.c_str(), (inside_ / "hard").c_str()); }), 0);
 }
 
-TEST_F(SandboxTest, ReadsNoOtherJobAndNoPasswords) {
-  need("Landlock");
+TEST_F(LandlockTest, ReadsNoOtherJobAndNoPasswords) {
   EXPECT_EQ(tried_to_open(outside_, O_RDONLY), EACCES);
   EXPECT_EQ(tried_to_open("/etc/passwd", O_RDONLY), EACCES);
   EXPECT_EQ(tried_to_open("/proc/1/environ", O_RDONLY), EACCES);
 }
 
-TEST_F(SandboxTest, OpensNoSocket) {
-  need("seccomp");
+TEST_F(SeccompTest, OpensNoSocket) {
   for (const int family : {AF_INET, AF_INET6, AF_UNIX, AF_NETLINK}) {
     EXPECT_EQ(tried([&] { return ::socket(family, SOCK_STREAM, 0); }), EPERM) << family;
   }
 }
 
-TEST_F(SandboxTest, StartsNoProgram) {
-  need("seccomp");
+TEST_F(SeccompTest, StartsNoProgram) {
   char* const arguments[] = {nullptr};
   EXPECT_EQ(tried([&] { return ::execve("/bin/true", arguments, arguments); }), EPERM);
   EXPECT_EQ(tried([&] {
@@ -118,16 +133,14 @@ TEST_F(SandboxTest, StartsNoProgram) {
             EPERM);
 }
 
-TEST_F(SandboxTest, TracesAndSignalsNobodyElse) {
-  need("seccomp");
+TEST_F(SeccompTest, TracesAndSignalsNobodyElse) {
   const pid_t own = ::getpid();
   EXPECT_EQ(tried([&] { return ::kill(own, 0); }), EPERM);
   EXPECT_EQ(tried([&] { return ::syscall(SYS_tgkill, own, own, 0); }), EPERM);
   EXPECT_EQ(tried([&] { return ::ptrace(PTRACE_ATTACH, own, nullptr, nullptr); }), EPERM);
 }
 
-TEST_F(SandboxTest, RaisesNoLimitButReadsThem) {
-  need("seccomp");
+TEST_F(SeccompTest, RaisesNoLimitButReadsThem) {
   EXPECT_EQ(tried([] {
               rlimit limits{};
               return ::getrlimit(RLIMIT_NOFILE, &limits);
@@ -140,8 +153,7 @@ TEST_F(SandboxTest, RaisesNoLimitButReadsThem) {
             EPERM);
 }
 
-TEST_F(SandboxTest, MakesThreadsButNoNamespaces) {
-  need("seccomp");
+TEST_F(SeccompTest, MakesThreadsButNoNamespaces) {
   EXPECT_EQ(tried([] { return ::unshare(CLONE_NEWUSER); }), EPERM);
   EXPECT_EQ(tried([] {
               pthread_t thread{};
@@ -154,8 +166,7 @@ TEST_F(SandboxTest, MakesThreadsButNoNamespaces) {
             0);
 }
 
-TEST_F(SandboxTest, AbortsWithItsOwnSignal) {
-  need("seccomp");
+TEST_F(SeccompTest, AbortsWithItsOwnSignal) {
   EXPECT_EQ(tried([]() -> long { std::abort(); }), 1000 + SIGABRT);
 }
 
