@@ -33,7 +33,7 @@ Json errors_of(const std::vector<Problem>& problems) {
 [[noreturn]] void refuse(const std::vector<Problem>& problems) {
   const std::size_t count = problems.size();
   const Problem& first = problems.front();
-  const std::string_view where = first.pointer.empty() ? "the whole scene" : first.pointer;
+  const std::string where = first.pointer.empty() ? "the whole scene" : first.pointer;
   throw ApiError(ProblemType::invalid_scene,
                  fmt::format("{} problem{}; first, {}: {}", count, count == 1 ? "" : "s", where,
                              first.message),

@@ -22,7 +22,7 @@ Response echo(const Request& request) {
   response.content_type = "text/plain";
   response.body = request.method + " " + request.path + " " + request.body;
   if (request.path == "/long") response.body.assign(100'000, 'x');
-  if (request.path == "/huge") response.body.assign(32U << 20U, 'x');
+  if (request.path == "/huge") response.body.assign(12U << 20U, 'x');
   if (request.path == "/gone") response.file = "/nonexistent/file";
   return response;
 }
@@ -314,7 +314,8 @@ TEST(HttpServerThreads, AFailingHandlerIsAProblemNotACrash) {
 TEST(HttpServerThreads, WhatAClientSendsCannotForgeWhereItComesFrom) {
   Server server;
   EXPECT_EQ(status_of(server.ask(get("/", "REMOTE_ADDR: 10.0.0.1\r\nREMOTE_PORT: 1\r\n"))), 200);
-  ASSERT_EQ(server.seen().size(), 1U);
+  // The server notes it after the answer is sent.
+  wait_until("the record", [&] { return !server.seen().empty(); });
   EXPECT_TRUE(server.seen().front().peer.starts_with("127.0.0.1:"));
 }
 

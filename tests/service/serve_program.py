@@ -58,16 +58,26 @@ class Serve(unittest.TestCase):
 
     def test_drains_running_jobs_and_goes_on_with_them_at_the_next_start(self):
         data = os.path.join(self.folder, "data")
-        with Server(PROGRAM, "--cores", "1", "--disk-reserve", "0", data=data) as server:
-            job = server.submit(scene(40.0, interval=1.0))
-            server.wait_until("progress", lambda: server.ask(
-                "GET", f"/v1/jobs/{job}").json()["progress"])
+        options = ("--cores", "1", "--disk-reserve", "0")
+
+        def steps(server, job, more_than):
+            progress = server.ask("GET", f"/v1/jobs/{job}").json()["progress"]
+            return progress["step"] if progress and progress["step"] > more_than else None
+
+        with Server(PROGRAM, *options, data=data) as server:
+            # Long enough to be running still however fast the machine is.
+            job = server.submit(scene(1e4, spacing=0.01, interval=1.0))
+            before = server.wait_until("progress", lambda: steps(server, job, 0))
             server.process.send_signal(signal.SIGTERM)
             self.assertEqual(server.process.wait(300), 0)
-        with Server(PROGRAM, "--cores", "1", "--disk-reserve", "0", data=data) as server:
-            done = server.wait_for(job, "completed")
-            self.assertEqual(done["attempts"], 2)
-            self.assertEqual(done["crashes"], 0)
+        with Server(PROGRAM, *options, data=data) as server:
+            server.wait_until("more progress", lambda: steps(server, job, before))
+            self.assertEqual(server.ask("POST", f"/v1/jobs/{job}/cancel").status // 100, 2)
+            ended = server.wait_until("its end", lambda: (
+                lambda shown: shown if shown["state"] == "cancelled" else None)(
+                    server.ask("GET", f"/v1/jobs/{job}").json()))
+            self.assertEqual(ended["attempts"], 2)
+            self.assertEqual(ended["crashes"], 0)
 
     def test_a_second_signal_ends_it_at_once(self):
         with Server(PROGRAM, "--cores", "1", "--disk-reserve", "0") as server:
