@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "engine/sph/kernel.hpp"
@@ -15,7 +16,7 @@ namespace {
 // A pair list serves until a particle has used up its reach. A particle's reach grows with its
 // speed, so that all use theirs up at about the same time and a few fast ones do not force a sort
 // at each step.
-constexpr double kListLifetime = 6.0;  // h/c
+constexpr double kListLifetime = 5.0;  // h/c
 constexpr double kReachMargin = 1.3;   // of the distance at present speed in that time
 constexpr double kLeastReach = 0.03;   // h
 constexpr double kMostReach = 1.5;     // h
@@ -62,6 +63,7 @@ class Engine final : public Solver::Impl {
   void reorder(const Layout& next);
   void set_reach();
   void bind();
+  void place_sums();
   [[nodiscard]] std::uint32_t most_neighbours() const;
 
   // Passes.
@@ -71,6 +73,7 @@ class Engine final : public Solver::Impl {
   void sum_wall_pressure();
   void reinitialise();
   void run_sweep(typename Sweeps<T>::Sweep loop, const PairList* to_wall);
+  void gather(const ParticleSpan& p, std::span<const SumBlock> blocks);
   void measure(double ahead);
   void note_motion();
   void choose_time_step();
@@ -96,6 +99,11 @@ class Engine final : public Solver::Impl {
   AlignedArray<T> density_sum_, x_sum_, y_sum_;
   std::vector<double> origin_x_, origin_y_;  // per cluster
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
+  std::vector<AlignedArray<T>> chunk_sums_;  // of fluid_to_fluid_, per chunk
+  struct Arrival {  // sums that another chunk has for a cluster of this one
+    std::uint32_t chunk, place, cluster;
+  };
+  std::vector<std::vector<Arrival>> arrivals_;  // per chunk, by the chunk they come from
   Motion motion_;
 
   Layout wall_layout_;
@@ -241,7 +249,10 @@ void Engine<T>::load(const SolverState& state) {
 template <typename T>
 void Engine<T>::start_kick_drift_kick() {
   run_sweep(sweeps_.acceleration, wall_count > 0 ? &fluid_to_wall_ : nullptr);
-  for_chunks([&](const ParticleSpan& p, Motion&) { sweeps_.updates.kick(p, rates(), 0.0); });
+  for_chunks([&](const ParticleSpan& p, Motion&) {
+    gather(p, std::array{kXSum, kYSum});
+    sweeps_.updates.kick(p, rates(), 0.0);
+  });
 }
 
 template <typename T>
@@ -406,52 +417,76 @@ void Engine<T>::bind() {
     p.y = particles.y_sorted.data();
     sweeps_.updates.write_pairs(p, scales(), pairs_);
   });
-  const T cut_off = static_cast<T>(method.support_ratio());
-  const T tile = constants_.tile_size;
-  build_pair_list(team_, sweeps_, cut_off, tile, layout, bounds, view(pairs_), layout, bounds,
-                  view(pairs_), fluid_to_fluid_);
+  const PairRange<T> range{static_cast<T>(method.support_ratio()), constants_.tile_size};
+  const PairSet<T> fluid{layout, bounds, view(pairs_)};
+  build_pair_list(team_, sweeps_, range, fluid, fluid, fluid_to_fluid_);
   if (wall_count > 0) {
-    build_pair_list(team_, sweeps_, cut_off, tile, layout, bounds, view(pairs_), wall_layout_,
-                    wall_bounds_, view(walls_), fluid_to_wall_);
-    build_pair_list(team_, sweeps_, cut_off, tile, wall_layout_, wall_bounds_, view(walls_), layout,
-                    bounds, view(pairs_), wall_to_fluid_);
+    const PairSet<T> wall{wall_layout_, wall_bounds_, view(walls_)};
+    build_pair_list(team_, sweeps_, range, fluid, wall, fluid_to_wall_);
+    build_pair_list(team_, sweeps_, range, wall, fluid, wall_to_fluid_);
   }
+  place_sums();
   extremes.max_neighbours = most_neighbours();
   for_chunks(
       [&](const ParticleSpan& p, Motion&) { sweeps_.updates.write_pairs(p, scales(), pairs_); });
 }
 
-/// Exact where a list is long enough to hold too many neighbours, else the bound that the lists
-/// give.
+/// Room for every chunk's sums, and who brings what to whom.
+template <typename T>
+void Engine<T>::place_sums() {
+  const auto& lists = fluid_to_fluid_.chunks;
+  chunk_sums_.resize(lists.size());
+  arrivals_.resize(lists.size());
+  for (auto& arrivals : arrivals_) arrivals.clear();
+  for (std::uint32_t k = 0; k < lists.size(); ++k) {
+    chunk_sums_[k].resize(kSumStride * lists[k].places());
+    auto place = static_cast<std::uint32_t>(lists[k].begin.size() - 1);
+    for (const std::uint32_t guest : lists[k].guests) {
+      arrivals_[guest / kChunk].push_back({k, place++, guest % static_cast<std::uint32_t>(kChunk)});
+    }
+  }
+}
+
+/// Exact where lists are long enough to hold too many neighbours, else the bound that they give.
 template <typename T>
 std::uint32_t Engine<T>::most_neighbours() const {
+  const auto& lists = fluid_to_fluid_.chunks;
+  std::vector<std::uint32_t> met(layout.clusters(), 0);
   std::uint32_t most = 0;
-  const T cut_off_sq = static_cast<T>(method.support_ratio() * method.support_ratio());
-  for (std::size_t k = 0; k < fluid_to_fluid_.chunks.size(); ++k) {
-    const PairList::Chunk& chunk = fluid_to_fluid_.chunks[k];
-    for (std::size_t c = 0; c + 1 < chunk.begin.size(); ++c) {
-      const std::uint32_t bound =
-          static_cast<std::uint32_t>(kCluster) * (chunk.begin[c + 1] - chunk.begin[c]);
-      if (bound <= std::max(most, kManyNeighbours)) {
-        most = std::max(most, bound);
-        continue;
-      }
-      for (std::size_t i = kCluster * (kChunk * k + c); i < kCluster * (kChunk * k + c + 1); ++i) {
-        std::uint32_t count = 0;
-        for (std::uint32_t e = chunk.begin[c]; e < chunk.begin[c + 1]; ++e) {
-          // A neighbour in another tile is left out of this count.
-          const std::size_t first = kCluster * (chunk.entries[e] & PairList::kClusterMask);
-          for (std::size_t j = first; j < first + kCluster; ++j) {
-            const T dx = pairs_.x[i] - pairs_.x[j];
-            const T dy = pairs_.y[i] - pairs_.y[j];
-            count += dx * dx + dy * dy < cut_off_sq ? 1U : 0U;
-          }
-        }
-        most = std::max(most, count);
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) {
+      const std::uint32_t count = lists[k].begin[c + 1] - lists[k].begin[c];
+      met[kChunk * k + c] += count;
+      if (count == 0) continue;
+      for (std::uint32_t e = lists[k].begin[c] + 1; e < lists[k].begin[c + 1]; ++e) {
+        ++met[lists[k].entries[e] & PairList::kClusterMask];
       }
     }
   }
-  return most;
+  for (const std::uint32_t m : met) most = std::max(most, m * static_cast<std::uint32_t>(kCluster));
+  if (most <= kManyNeighbours) return most;
+
+  // A neighbour in another tile is left out of this count.
+  std::vector<std::uint32_t> count(layout.slots(), 0);
+  const T cut_off_sq = static_cast<T>(method.support_ratio() * method.support_ratio());
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) {
+      const std::size_t first_i = kCluster * (kChunk * k + c);
+      for (std::uint32_t e = lists[k].begin[c]; e < lists[k].begin[c + 1]; ++e) {
+        const std::size_t first_j = kCluster * (lists[k].entries[e] & PairList::kClusterMask);
+        for (std::size_t i = first_i; i < first_i + kCluster; ++i) {
+          for (std::size_t j = first_j; j < first_j + kCluster; ++j) {
+            const T dx = pairs_.x[i] - pairs_.x[j];
+            const T dy = pairs_.y[i] - pairs_.y[j];
+            if (!(dx * dx + dy * dy < cut_off_sq)) continue;
+            ++count[i];
+            if (first_i != first_j) ++count[j];
+          }
+        }
+      }
+    }
+  }
+  return count.empty() ? 0 : *std::max_element(count.begin(), count.end());
 }
 
 // ---- passes
@@ -469,11 +504,29 @@ void Engine<T>::run_sweep(typename Sweeps<T>::Sweep loop, const PairList* to_wal
     task.first_cluster = chunk * kChunk;
     task.clusters = std::min(kChunk, layout.clusters() - task.first_cluster);
     task.constants = &constants_;
-    task.density_sum = density_sum_.data();
-    task.x_sum = x_sum_.data();
-    task.y_sum = y_sum_.data();
+    task.sums = chunk_sums_[chunk].data();
     loop(task);
   });
+}
+
+/// Adds up, in a fixed order, what a sweep left for the particles of a chunk: these blocks of the
+/// sums.
+template <typename T>
+void Engine<T>::gather(const ParticleSpan& p, std::span<const SumBlock> blocks) {
+  using Values = Eigen::Array<T, static_cast<int>(kCluster), 1>;
+  const std::size_t chunk = p.begin / (kCluster * kChunk);
+  for (const SumBlock block : blocks) {
+    AlignedArray<T>& sum = block == kDensitySum ? density_sum_ : block == kXSum ? x_sum_ : y_sum_;
+    T* const out = sum.data() + p.begin;
+    const T* const own = chunk_sums_[chunk].data() + block;
+    for (std::size_t c = 0; c < (p.end - p.begin) / kCluster; ++c) {
+      Eigen::Map<Values>(out + kCluster * c) = Eigen::Map<const Values>(own + kSumStride * c);
+    }
+    for (const Arrival& a : arrivals_[chunk]) {
+      const T* const from = chunk_sums_[a.chunk].data() + kSumStride * a.place + block;
+      Eigen::Map<Values>(out + kCluster * a.cluster) += Eigen::Map<const Values>(from);
+    }
+  }
 }
 
 /// eq. 9, and from it the density, volume and stress of the dummy particles (eq. 3).
@@ -489,7 +542,7 @@ void Engine<T>::sum_wall_pressure() {
     task.first_cluster = chunk * kChunk;
     task.clusters = std::min(kChunk, wall_layout_.clusters() - task.first_cluster);
     task.constants = &constants_;
-    task.density_sum = wall_excess_.data();
+    task.sums = wall_excess_.data();
     sweeps_.wall_pressure(task);
     const std::size_t begin = kCluster * task.first_cluster;
     for (std::size_t s = begin; s < begin + kCluster * task.clusters; ++s) {
@@ -520,6 +573,10 @@ void Engine<T>::reinitialise() {
   const PassClock clock(pass_seconds, Pass::reinitialisation);
   run_sweep(sweeps_.reinitialise, wall_count > 0 ? &fluid_to_wall_ : nullptr);
   for_chunks([&](const ParticleSpan& p, Motion&) {
+    gather(p, std::array{kDensitySum, kXSum});
+    for (std::size_t s = p.begin; s < p.end; ++s) {
+      density_sum_[s] = x_sum_[s] > T{0} ? density_sum_[s] / x_sum_[s] : T{0};
+    }
     sweeps_.updates.reinitialise(p, density_sum_.data(), method.reference_density);
     sweeps_.updates.write_pairs(p, scales(), pairs_);
   });
@@ -531,22 +588,17 @@ void Engine<T>::note_motion() {
   extremes.min_density_excess = particle_count > 0 ? motion_.min_density_excess : 0.0;
   extremes.max_density_excess = particle_count > 0 ? motion_.max_density_excess : 0.0;
   extremes.finite = motion_.finite;
+  if (method.integrator == Integrator::kick_drift_kick) {
+    extremes.max_acceleration = std::sqrt(motion_.acceleration_sq);
+  }
 }
 
 template <typename T>
 void Engine<T>::measure(double ahead) {
   motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
     sweeps_.updates.measure(p, method.domain, ahead, seen);
-    if (p.ax == nullptr) return;
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      if (p.reach[s] >= kNoReach) continue;
-      seen.acceleration_sq = std::max(seen.acceleration_sq, p.ax[s] * p.ax[s] + p.ay[s] * p.ay[s]);
-    }
   });
   note_motion();
-  if (method.integrator == Integrator::kick_drift_kick) {
-    extremes.max_acceleration = std::sqrt(motion_.acceleration_sq);
-  }
 }
 
 /// eq. 18 with its unit mended, and the force limit: dt <= C h/(c + |v|), dt <= 0.25 sqrt(h/|a|).
@@ -583,8 +635,10 @@ void Engine<T>::step_leap_frog() {
   }
   const PassClock clock(pass_seconds, Pass::update);
   const Rates<T> r = rates();
-  const Motion forces = for_chunks(
-      [&](const ParticleSpan& p, Motion& seen) { sweeps_.updates.measure_rates(p, r, seen); });
+  const Motion forces = for_chunks([&](const ParticleSpan& p, Motion& seen) {
+    gather(p, std::array{kDensitySum, kXSum, kYSum});
+    sweeps_.updates.measure_rates(p, r, seen);
+  });
   extremes.max_acceleration = std::sqrt(forces.acceleration_sq);
   const double last = time_step;
   choose_time_step();
@@ -623,6 +677,7 @@ void Engine<T>::step_kick_drift_kick() {
     const PassClock clock(pass_seconds, Pass::update);
     const Rates<T> r = rates();
     for_chunks([&](const ParticleSpan& p, Motion&) {
+      gather(p, std::array{kDensitySum});
       sweeps_.updates.density_drift(p, r, time_step);
       sweeps_.updates.write_pairs(p, scales(), pairs_);
     });
@@ -638,8 +693,12 @@ void Engine<T>::step_kick_drift_kick() {
   }
   const PassClock clock(pass_seconds, Pass::update);
   const Rates<T> r = rates();
-  for_chunks([&](const ParticleSpan& p, Motion&) { sweeps_.updates.kick(p, r, time_step); });
-  measure(0.0);
+  motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
+    gather(p, std::array{kXSum, kYSum});
+    sweeps_.updates.kick(p, r, time_step);
+    sweeps_.updates.measure(p, method.domain, 0.0, seen);
+  });
+  note_motion();
   extremes.finite = extremes.finite && finite;
   time += time_step;
   ++step_count;
@@ -672,6 +731,8 @@ std::size_t Engine<T>::memory_bytes() const {
   std::size_t bytes = pairs_.bytes() + walls_.bytes() + density_sum_.bytes() + x_sum_.bytes() +
                       y_sum_.bytes() + fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() +
                       wall_to_fluid_.bytes();
+  for (const auto& sums : chunk_sums_) bytes += sums.bytes();
+  for (const auto& arrivals : arrivals_) bytes += arrivals.capacity() * sizeof(Arrival);
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
   return bytes + layout.source.capacity() * sizeof(std::uint32_t);
 }

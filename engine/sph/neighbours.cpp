@@ -10,9 +10,9 @@ namespace {
 // Of sums of bounds and reaches; the bounds themselves are rounded outwards.
 constexpr float kSlack = 1e-3F;
 
-/// Two steps of single precision farther: the value's own rounding, and that of a sum with it.
-float outwards(float value, float towards) {
-  return std::nextafter(std::nextafter(value, towards), towards);
+/// In single precision and two steps farther: the value's own rounding, and that of a sum with it.
+float outwards(double value, float towards) {
+  return std::nextafter(std::nextafter(static_cast<float>(value), towards), towards);
 }
 
 std::uint32_t tile_code(const Grid::Tile& i, const Grid::Tile& j) {
@@ -28,10 +28,11 @@ class StripSearch {
       : layout_(layout), bounds_(bounds) {}
 
   /// Starts at a new strip of `self`: none of its clusters reaches out of [low, high] + margin.
-  void start(float low, float high, float margin) {
+  /// Strips of `other` before `first_strip` are left out.
+  void start(float low, float high, float margin, std::size_t first_strip) {
     rows_.clear();
     const std::size_t strips = layout_.strip_begin.size() - 1;
-    for (std::size_t s = 0; s < strips; ++s) {
+    for (std::size_t s = first_strip; s < strips; ++s) {
       const std::uint32_t begin = layout_.strip_begin[s];
       const std::uint32_t end = layout_.strip_begin[s + 1];
       if (begin == end) continue;
@@ -42,10 +43,11 @@ class StripSearch {
   }
 
   /// Appends the entries for a cluster with bounds [x_min, x_max]; x_min must not fall within a
-  /// strip.
+  /// strip. Clusters of `other` before `first` are left out.
   void collect(float x_min, float x_max, float y_min, float y_max, const Grid::Tile& tile,
-               std::vector<std::uint32_t>& out) {
+               std::size_t first, std::vector<std::uint32_t>& out) {
     for (Row& row : rows_) {
+      row.next = std::max(row.next, static_cast<std::uint32_t>(first));
       while (row.next < row.end && bounds_.x_max[row.next] < x_min - row.reach) ++row.next;
       for (std::uint32_t j = row.next; j < row.end && bounds_.x_min[j] <= x_max + row.reach; ++j) {
         if (bounds_.y_min[j] > y_max + row.reach || bounds_.y_max[j] < y_min - row.reach) continue;
@@ -65,6 +67,35 @@ class StripSearch {
   std::vector<Row> rows_;
 };
 
+/// Gives every entry of a mutual list its place in the chunk's sums.
+void assign_places(std::size_t first, std::size_t count, std::size_t clusters,
+                   PairList::Chunk& chunk) {
+  constexpr std::uint32_t kNone = ~0U;
+  // Of every cluster; all kNone between calls, so that only the guests are reset.
+  thread_local std::vector<std::uint32_t> place;
+  if (place.size() < clusters) place.assign(clusters, kNone);
+  chunk.targets.resize(chunk.entries.size());
+  chunk.guests.clear();
+  for (std::size_t e = 0; e < chunk.entries.size(); ++e) {
+    const std::uint32_t j = chunk.entries[e] & PairList::kClusterMask;
+    if (j < first + count) {
+      chunk.targets[e] = j - static_cast<std::uint32_t>(first);
+      continue;
+    }
+    if (place[j] == kNone) {
+      place[j] = static_cast<std::uint32_t>(count + chunk.guests.size());
+      chunk.guests.push_back(j);
+    }
+    chunk.targets[e] = place[j];
+  }
+  for (const std::uint32_t j : chunk.guests) place[j] = kNone;
+  // A cluster with itself gets all its pairs from its own side.
+  const auto nobody = static_cast<std::uint32_t>(chunk.places() - 1);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (chunk.begin[n] != chunk.begin[n + 1]) chunk.targets[chunk.begin[n]] = nobody;
+  }
+}
+
 }  // namespace
 
 void ClusterBounds::assign(const Grid& grid, const Layout& layout, double smoothing_length,
@@ -77,16 +108,22 @@ void ClusterBounds::assign(const Grid& grid, const Layout& layout, double smooth
   reach.assign(clusters, 0.0F);
   tile.assign(clusters, {});
   for (std::size_t c = 0; c < clusters; ++c) {
-    for (std::size_t s = kCluster * c; s < kCluster * (c + 1) && id[s] >= 0.0; ++s) {
-      if (s == kCluster * c) tile[c] = grid.tile({x[s], y[s]});
-      const auto xs = static_cast<float>(x[s] / smoothing_length);
-      const auto ys = static_cast<float>(y[s] / smoothing_length);
-      x_min[c] = std::min(x_min[c], outwards(xs, -kHuge));
-      x_max[c] = std::max(x_max[c], outwards(xs, kHuge));
-      y_min[c] = std::min(y_min[c], outwards(ys, -kHuge));
-      y_max[c] = std::max(y_max[c], outwards(ys, kHuge));
-      reach[c] = std::max(reach[c], static_cast<float>(reach_of[s] / smoothing_length));
+    const std::size_t first = kCluster * c;
+    if (id[first] < 0.0) continue;
+    double left = x[first], right = left, bottom = y[first], top = bottom, most = reach_of[first];
+    for (std::size_t s = first + 1; s < first + kCluster && id[s] >= 0.0; ++s) {
+      left = std::min(left, x[s]);
+      right = std::max(right, x[s]);
+      bottom = std::min(bottom, y[s]);
+      top = std::max(top, y[s]);
+      most = std::max(most, reach_of[s]);
     }
+    tile[c] = grid.tile({x[first], y[first]});
+    x_min[c] = outwards(left / smoothing_length, -kHuge);
+    x_max[c] = outwards(right / smoothing_length, kHuge);
+    y_min[c] = outwards(bottom / smoothing_length, -kHuge);
+    y_max[c] = outwards(top / smoothing_length, kHuge);
+    reach[c] = static_cast<float>(most / smoothing_length);
   }
   const std::size_t strips = layout.strip_begin.size() - 1;
   strip_y_min.assign(strips, kHuge);
@@ -102,11 +139,10 @@ void ClusterBounds::assign(const Grid& grid, const Layout& layout, double smooth
 }
 
 template <typename T>
-void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, T cut_off, T tile_size,
-                     const Layout& self_layout, const ClusterBounds& self_bounds,
-                     const PairView<T>& self, const Layout& other_layout,
-                     const ClusterBounds& other_bounds, const PairView<T>& other, PairList& list) {
-  const std::size_t clusters = self_layout.clusters();
+void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,
+                     const PairSet<T>& self, const PairSet<T>& other, PairList& list) {
+  const bool mutual = &self == &other;
+  const std::size_t clusters = self.layout.clusters();
   const std::size_t chunks = (clusters + kChunk - 1) / kChunk;
   list.chunks.resize(chunks);
   team.run(chunks, [&](std::size_t task) {
@@ -117,38 +153,37 @@ void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, T cut_off, T til
     chunk.begin.assign(count + 1, 0);
 
     std::vector<std::uint32_t> candidates;
-    StripSearch search(other_layout, other_bounds);
-    const auto& strips = self_layout.strip_begin;
+    StripSearch search(other.layout, other.bounds);
+    const ClusterBounds& bounds = self.bounds;
+    const auto& strips = self.layout.strip_begin;
     auto strip_end = strips.begin();  // end of the strip of the last cluster
     for (std::size_t n = 0; n < count; ++n) {
       const std::size_t c = first + n;
       chunk.begin[n + 1] = chunk.begin[n];
-      if (c >= strips.back()) continue;  // padding behind the last strip
-      if (n == 0 || c >= *strip_end) {
+      if (c >= strips.back() || bounds.x_min[c] > bounds.x_max[c]) continue;  // empty
+      if (strip_end == strips.begin() || c >= *strip_end) {
         strip_end = std::upper_bound(strips.begin(), strips.end(), static_cast<std::uint32_t>(c));
         const auto s = static_cast<std::size_t>(strip_end - strips.begin()) - 1;
-        search.start(self_bounds.strip_y_min[s], self_bounds.strip_y_max[s],
-                     static_cast<float>(cut_off) + self_bounds.strip_reach[s]);
+        search.start(bounds.strip_y_min[s], bounds.strip_y_max[s],
+                     static_cast<float>(range.cut_off) + bounds.strip_reach[s], mutual ? s : 0);
       }
       candidates.clear();
-      search.collect(self_bounds.x_min[c], self_bounds.x_max[c], self_bounds.y_min[c],
-                     self_bounds.y_max[c], self_bounds.tile[c], candidates);
+      search.collect(bounds.x_min[c], bounds.x_max[c], bounds.y_min[c], bounds.y_max[c],
+                     bounds.tile[c], mutual ? c : 0, candidates);
       chunk.entries.resize(chunk.begin[n] + candidates.size());
-      const std::size_t kept =
-          sweeps.prune({self, other, cut_off, tile_size, c, candidates.data(), candidates.size(),
-                        chunk.entries.data() + chunk.begin[n]});
+      const std::size_t kept = sweeps.prune(
+          {self.pairs, other.pairs, range.cut_off, range.tile_size, c, candidates.data(),
+           candidates.size(), chunk.entries.data() + chunk.begin[n]});
       chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
       chunk.entries.resize(chunk.begin[n + 1]);
     }
+    if (mutual) assign_places(first, count, clusters, chunk);
   });
 }
 
-template void build_pair_list<float>(ThreadTeam&, const Sweeps<float>&, float, float, const Layout&,
-                                     const ClusterBounds&, const PairView<float>&, const Layout&,
-                                     const ClusterBounds&, const PairView<float>&, PairList&);
-template void build_pair_list<double>(ThreadTeam&, const Sweeps<double>&, double, double,
-                                      const Layout&, const ClusterBounds&, const PairView<double>&,
-                                      const Layout&, const ClusterBounds&, const PairView<double>&,
-                                      PairList&);
+template void build_pair_list<float>(ThreadTeam&, const Sweeps<float>&, const PairRange<float>&,
+                                     const PairSet<float>&, const PairSet<float>&, PairList&);
+template void build_pair_list<double>(ThreadTeam&, const Sweeps<double>&, const PairRange<double>&,
+                                      const PairSet<double>&, const PairSet<double>&, PairList&);
 
 }  // namespace sluice

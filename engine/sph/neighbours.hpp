@@ -24,23 +24,33 @@ struct ClusterBounds {
               const double* y, const double* reach_of, const double* id);
 };
 
-/// For every cluster of `self` the clusters of `other` that hold a particle within the cut-off plus
-/// both reaches, in memory order. Chunks are independent tasks of the team.
+/// A set of particles as the search sees it.
 template <typename T>
-void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, T cut_off, T tile_size,
-                     const Layout& self_layout, const ClusterBounds& self_bounds,
-                     const PairView<T>& self, const Layout& other_layout,
-                     const ClusterBounds& other_bounds, const PairView<T>& other, PairList& list);
+struct PairSet {
+  const Layout& layout;
+  const ClusterBounds& bounds;
+  PairView<T> pairs;
+};
 
-extern template void build_pair_list<float>(ThreadTeam&, const Sweeps<float>&, float, float,
-                                            const Layout&, const ClusterBounds&,
-                                            const PairView<float>&, const Layout&,
-                                            const ClusterBounds&, const PairView<float>&,
-                                            PairList&);
-extern template void build_pair_list<double>(ThreadTeam&, const Sweeps<double>&, double, double,
-                                             const Layout&, const ClusterBounds&,
-                                             const PairView<double>&, const Layout&,
-                                             const ClusterBounds&, const PairView<double>&,
-                                             PairList&);
+/// Lengths of the search, in h.
+template <typename T>
+struct PairRange {
+  T cut_off;
+  T tile_size;
+};
+
+/// For every cluster of `self` the clusters of `other` that hold a particle within the cut-off plus
+/// both reaches, in memory order. When `self` and `other` are the same object the list is mutual:
+/// it holds those from the cluster itself on. Chunks are independent tasks of the team.
+template <typename T>
+void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,
+                     const PairSet<T>& self, const PairSet<T>& other, PairList& list);
+
+extern template void build_pair_list<float>(ThreadTeam&, const Sweeps<float>&,
+                                            const PairRange<float>&, const PairSet<float>&,
+                                            const PairSet<float>&, PairList&);
+extern template void build_pair_list<double>(ThreadTeam&, const Sweeps<double>&,
+                                             const PairRange<double>&, const PairSet<double>&,
+                                             const PairSet<double>&, PairList&);
 
 }  // namespace sluice

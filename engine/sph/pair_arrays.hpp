@@ -11,7 +11,7 @@ namespace sluice {
 /// Particles per cluster: pair sums run cluster against cluster.
 inline constexpr std::size_t kCluster = 4;
 /// Clusters per chunk: the unit of work of a thread.
-inline constexpr std::size_t kChunk = 64;
+inline constexpr std::size_t kChunk = 128;
 
 /// A growing aligned array whose tail may be read, not used, one vector past the end.
 template <typename T>
@@ -62,10 +62,19 @@ struct PairArrays {
 };
 
 /// For every cluster of a set, the clusters of another that may hold a neighbour, chunk by chunk.
+/// A list of a set with itself is mutual: it holds each pair of clusters once, and what is summed
+/// over it goes to both. Every chunk then has sums of its own, for its clusters and for its guests,
+/// so that no two chunks ever add to the same place and the result does not depend on threads.
 struct PairList {
   struct Chunk {
     std::vector<std::uint32_t> entries;  ///< cluster index | tile shift code << kShiftBit
     std::vector<std::uint32_t> begin;    ///< of each cluster of the chunk, and the end
+    std::vector<std::uint32_t> targets;  ///< mutual: place of each entry in the chunk's sums
+    std::vector<std::uint32_t> guests;   ///< mutual: clusters of later chunks that have a place,
+                                         ///< behind the chunk's own
+
+    /// Places in the sums: own clusters, guests, and one that nobody reads.
+    [[nodiscard]] std::size_t places() const { return begin.size() + guests.size(); }
   };
   static constexpr std::uint32_t kShiftBit = 28;
   static constexpr std::uint32_t kClusterMask = (1U << kShiftBit) - 1U;
@@ -74,10 +83,16 @@ struct PairList {
 
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
-    for (const Chunk& c : chunks) sum += 4 * (c.entries.capacity() + c.begin.capacity());
+    for (const Chunk& c : chunks) {
+      for (const auto* a : {&c.entries, &c.begin, &c.targets, &c.guests}) sum += 4 * a->capacity();
+    }
     return sum;
   }
 };
+
+/// Sums of a mutual list, per place: kSumStride values, in blocks of one value per particle.
+inline constexpr std::size_t kSumStride = 4 * kCluster;
+enum SumBlock : std::size_t { kDensitySum = 0, kYSum = kCluster, kXSum = 2 * kCluster };
 
 /// Tile shift codes 0-8: (X_j's tile - X_i's tile) + 1 in each direction, row by row; 4 is the same
 /// tile.

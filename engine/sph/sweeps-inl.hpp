@@ -15,6 +15,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "engine/sph/kernel-inl.hpp"
 #include "engine/sph/sweeps.hpp"
 #include "engine/sph/terms-inl.hpp"
@@ -57,9 +59,9 @@ HWY_INLINE auto load_j(const T* HWY_RESTRICT from) {
   return hn::LoadDup128(typename Blocks<T>::D(), from);
 }
 
-/// Adds up the lanes of each block and writes one value per particle i.
+/// Adds up the lanes of each block: one value per particle i.
 template <typename T, class V>
-HWY_INLINE void store_block_sums(V sum, T* HWY_RESTRICT to) {
+HWY_INLINE void add_lanes(V sum, T* HWY_RESTRICT out) {
   using B = Blocks<T>;
   const typename B::D d;
   if constexpr (B::j_lanes == 4) {
@@ -70,7 +72,57 @@ HWY_INLINE void store_block_sums(V sum, T* HWY_RESTRICT to) {
   }
   HWY_ALIGN T lanes[B::lanes];
   hn::Store(sum, d, lanes);
-  for (std::size_t i = 0; i < B::i_count; ++i) to[i] = lanes[i * B::j_lanes];
+  for (std::size_t i = 0; i < B::i_count; ++i) out[i] += lanes[i * B::j_lanes];
+}
+
+/// Adds up the blocks: one value per particle j, in one block.
+template <class D, class V>
+HWY_INLINE auto add_blocks(D, V v) {
+  if constexpr (hn::MaxLanes(D()) * sizeof(hn::TFromD<D>) == 16) {
+    return v;
+  } else {
+    const hn::Half<D> half;
+    return add_blocks(half, hn::LowerHalf(half, v) + hn::UpperHalf(half, v));
+  }
+}
+
+/// What the particles j of an entry get: the sums over i, subtracted, for a pair gives one what it
+/// takes from the other. `to` is the entry's place in the sums, at the first of the particles j.
+template <typename T, class V>
+HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V v) {
+  const auto sum = add_blocks(typename Blocks<T>::D(), v);
+  const hn::CappedTag<T, 16 / sizeof(T)> block;
+  hn::StoreU(hn::LoadU(block, to) - sum, block, to);
+}
+
+/// kFirst is kDensitySum or kYSum; the other block is kXSum.
+template <SumBlock kFirst, typename T, class V>
+HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V first, V x) {
+  const typename Blocks<T>::D d;
+  if constexpr (Blocks<T>::lanes == kSumStride) {
+    // All blocks of the place are one vector; those that this sweep does not sum are not read.
+    const V pairs = hn::ConcatLowerLower(d, x, first) + hn::ConcatUpperUpper(d, x, first);
+    hn::StoreU(hn::LoadU(d, to) - (pairs + hn::SwapAdjacentBlocks(pairs)), d, to);
+  } else {
+    subtract_from_j(to + kFirst, first);
+    subtract_from_j(to + kXSum, x);
+  }
+}
+
+template <typename T, class V>
+HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x) {
+  const typename Blocks<T>::D d;
+  if constexpr (Blocks<T>::lanes == kSumStride) {
+    const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
+    const V odd = y + hn::ConcatLowerUpper(d, y, y);
+    const V sums =
+        hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
+    hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+  } else {
+    subtract_from_j(to + kDensitySum, density);
+    subtract_from_j(to + kYSum, y);
+    subtract_from_j(to + kXSum, x);
+  }
 }
 
 /// Positions of the particles i as seen from the tile of a cluster j.
@@ -87,24 +139,34 @@ struct TileShift {
   }
 };
 
-/// Calls body(slot of j, x_ij/h, y_ij/h) for every vector of pairs of the list.
+/// Place in the sums of the particles j of an entry, or of its vector `part`.
+template <typename T>
+HWY_INLINE T* place_of(T* sums, const PairList::Chunk& list, std::size_t entry, std::size_t part) {
+  return sums + kSumStride * list.targets[entry] + part * Blocks<T>::j_lanes;
+}
+
+/// Calls body(slot of j, x_ij/h, y_ij/h, entry, part) for every vector of pairs of cluster c, the
+/// c-th of the list's chunk.
 template <typename T, class V, class Body>
-HWY_INLINE void for_each_pair(const std::uint32_t* HWY_RESTRICT entry, const std::uint32_t* end,
-                              const PairView<T>& other, const TileShift<T>& shift, V x_i, V y_i,
-                              const Body& body) {
+HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
+                              const TileShift<T>& shift, V x_i, V y_i, const Body& body) {
   using B = Blocks<T>;
   const typename B::D d;
-  for (; entry != end; ++entry) {
-    const std::size_t slot = kCluster * (*entry & PairList::kClusterMask);
-    const std::uint32_t code = *entry >> PairList::kShiftBit;
+  const std::uint32_t* HWY_RESTRICT entries = list.entries.data();
+  for (std::size_t n = list.begin[c]; n != list.begin[c + 1]; ++n) {
+    const std::size_t slot = kCluster * (entries[n] & PairList::kClusterMask);
+    const std::uint32_t code = entries[n] >> PairList::kShiftBit;
     const V x_seen = x_i + hn::Set(d, shift.x[code]);
     const V y_seen = y_i + hn::Set(d, shift.y[code]);
     for (std::size_t part = 0; part < B::j_vectors; ++part) {
       const std::size_t j = slot + part * B::j_lanes;
-      body(j, x_seen - load_j(other.x + j), y_seen - load_j(other.y + j));
+      body(j, x_seen - load_j(other.x + j), y_seen - load_j(other.y + j), n, part);
     }
   }
 }
+
+/// Who gets the sums of a list: the particles i, or both of a pair.
+enum class Share { i_alone, both };
 
 /// Which terms a rate sweep sums.
 enum class Sums { density, acceleration, both };
@@ -120,29 +182,35 @@ struct Terms {
 /// What the rate sums need of the particles i of a vector, and the sums.
 template <class V>
 struct RateOfI {
-  V u, v, density, half, diffused, stress;
+  V u, v, density, half, volume, diffused, stress;
   V density_sum, x_sum, y_sum;
 };
 
-template <class Shape, class Terms, bool kViscous, typename T, class V>
-HWY_INLINE void add_rates(const std::uint32_t* entry, const std::uint32_t* end,
-                          const PairView<T>& other, const TileShift<T>& shift, V x_i, V y_i,
+/// Adds the pairs of one list to the particles i and, where `sums` is given, to the particles j.
+template <class Shape, class Terms, bool kViscous, Share kShare, typename T, class V>
+HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
+                          const TileShift<T>& shift, V x_i, V y_i,
                           const ArtificialViscosityTerm<T>& viscosity,
-                          const DensityDiffusionTerm<T>& diffusion, RateOfI<V>& i) {
+                          const DensityDiffusionTerm<T>& diffusion, RateOfI<V>& i, T* sums) {
   const typename Blocks<T>::D d;
-  for_each_pair(entry, end, other, shift, x_i, y_i, [&](std::size_t j, V dx, V dy) HWY_ATTR {
+  const auto body = [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t part) HWY_ATTR {
     PairGeometry<V> pair{dx, dy, hn::MulAdd(dx, dx, dy * dy), hn::Zero(d)};
     const V g = Shape::slope(d, pair.r_sq);
     if constexpr (Terms::density || kViscous) {
       pair.approach = hn::MulAdd(i.u - load_j(other.u + j), dx, (i.v - load_j(other.v + j)) * dy);
     }
+    V density_j, x_j, y_j;
     if constexpr (Terms::density) {
-      V summand = hn::Zero(d);
+      V exchange = hn::Zero(d);
       if constexpr (Terms::diffusion) {
-        summand = diffusion.summand(d, i.diffused, load_j(other.diffused + j));
+        exchange = diffusion.summand(d, i.diffused, load_j(other.diffused + j));
       }
-      summand = Continuity::add_to(summand, pair, i.density);
+      const V summand = Continuity::add_to(exchange, pair, i.density);
       i.density_sum = hn::MulAdd(g * load_j(other.volume + j), summand, i.density_sum);
+      if constexpr (kShare == Share::both) {
+        const V density = hn::Set(d, T{1}) + load_j(other.excess + j);
+        density_j = g * i.volume * Continuity::add_for_j(exchange, pair, density);
+      }
     }
     if constexpr (Terms::acceleration) {
       V summand = PressureGradient::summand(i.stress, load_j(other.stress + j));
@@ -150,10 +218,23 @@ HWY_INLINE void add_rates(const std::uint32_t* entry, const std::uint32_t* end,
         summand = viscosity.add_to(d, summand, pair, i.half, load_j(other.excess + j));
       }
       summand = summand * g;
-      i.x_sum = hn::MulAdd(summand, dx, i.x_sum);
-      i.y_sum = hn::MulAdd(summand, dy, i.y_sum);
+      x_j = summand * dx;
+      y_j = summand * dy;
+      i.x_sum = i.x_sum + x_j;
+      i.y_sum = i.y_sum + y_j;
     }
-  });
+    if constexpr (kShare == Share::both) {
+      T* const to = place_of(sums, list, n, part);
+      if constexpr (Terms::density && Terms::acceleration) {
+        subtract_from_j(to, density_j, y_j, x_j);
+      } else if constexpr (Terms::density) {
+        subtract_from_j(to + kDensitySum, density_j);
+      } else {
+        subtract_from_j<kYSum>(to, y_j, x_j);
+      }
+    }
+  };
+  for_each_pair(list, c, other, shift, x_i, y_i, body);
 }
 
 /// eqs. 4, 5, 7 and 8 for the clusters of a chunk.
@@ -167,6 +248,7 @@ void sum_rates(const SweepTask<T>& task) {
   const DensityDiffusionTerm<T> diffusion{k.two_delta};
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon};
+  std::fill_n(task.sums, kSumStride * task.to_fluid->places(), T{});
 
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
@@ -180,41 +262,28 @@ void sum_rates(const SweepTask<T>& task) {
       const V excess = load_i(self.excess + slot);
       i.density = hn::Set(d, T{1}) + excess;
       i.half = hn::MulAdd(hn::Set(d, T{0.5}), excess, hn::Set(d, T{1}));
+      if constexpr (Terms::density) i.volume = load_i(self.volume + slot);
       if constexpr (Terms::diffusion) i.diffused = load_i(self.diffused + slot);
       if constexpr (Terms::acceleration) i.stress = load_i(self.stress + slot);
       i.density_sum = i.x_sum = i.y_sum = hn::Zero(d);
 
-      const auto& fluid = *task.to_fluid;
-      add_rates<Shape, Terms, Terms::viscosity>(
-          fluid.entries.data() + fluid.begin[c], fluid.entries.data() + fluid.begin[c + 1],
-          task.fluid, shift, x_i, y_i, viscosity, diffusion, i);
+      add_rates<Shape, Terms, Terms::viscosity, Share::both>(
+          *task.to_fluid, c, task.fluid, shift, x_i, y_i, viscosity, diffusion, i, task.sums);
       if (task.to_wall != nullptr) {
-        const auto& wall = *task.to_wall;
-        add_rates<Shape, Terms, Terms::friction>(wall.entries.data() + wall.begin[c],
-                                                 wall.entries.data() + wall.begin[c + 1], task.wall,
-                                                 shift, x_i, y_i, friction, diffusion, i);
+        add_rates<Shape, Terms, Terms::friction, Share::i_alone>(
+            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, diffusion, i, task.sums);
       }
-      if constexpr (Terms::density) store_block_sums(i.density_sum, task.density_sum + slot);
+      T* const sums = task.sums + kSumStride * c + part;
+      if constexpr (Terms::density) add_lanes(i.density_sum, sums + kDensitySum);
       if constexpr (Terms::acceleration) {
-        store_block_sums(i.x_sum, task.x_sum + slot);
-        store_block_sums(i.y_sum, task.y_sum + slot);
+        add_lanes(i.x_sum, sums + kXSum);
+        add_lanes(i.y_sum, sums + kYSum);
       }
     }
   }
 }
 
-/// Quotient of two sums over W, for the particles i of a vector; 0 where nothing is near.
-template <typename T, class V>
-HWY_INLINE void store_quotient(V numerator, V divisor, T* HWY_RESTRICT to) {
-  using B = Blocks<T>;
-  T above[B::i_count];
-  T below[B::i_count];
-  store_block_sums(numerator, above);
-  store_block_sums(divisor, below);
-  for (std::size_t i = 0; i < B::i_count; ++i) to[i] = below[i] > T{0} ? above[i] / below[i] : T{0};
-}
-
-/// eq. 9 for the wall clusters of a chunk.
+/// eq. 9 for the wall clusters of a chunk; 0 where no fluid is near.
 template <class Shape, typename T>
 void sum_wall_pressure(const SweepTask<T>& task) {
   using B = Blocks<T>;
@@ -222,53 +291,70 @@ void sum_wall_pressure(const SweepTask<T>& task) {
   const typename B::D d;
   const TileShift<T> shift(task.constants->tile_size);
   const WallPressureTerm<T> term{task.constants->gravity_x, task.constants->gravity_y};
-  const auto& fluid = *task.to_fluid;
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
       const std::size_t slot = kCluster * (task.first_cluster + c) + part;
       V pressure = hn::Zero(d);
       V weight = hn::Zero(d);
-      for_each_pair(fluid.entries.data() + fluid.begin[c],
-                    fluid.entries.data() + fluid.begin[c + 1], task.fluid, shift,
-                    load_i(task.self.x + slot), load_i(task.self.y + slot),
-                    [&](std::size_t j, V dx, V dy) HWY_ATTR {
+      for_each_pair(*task.to_fluid, c, task.fluid, shift, load_i(task.self.x + slot),
+                    load_i(task.self.y + slot),
+                    [&](std::size_t j, V dx, V dy, std::size_t, std::size_t) HWY_ATTR {
                       const V w = Shape::value(d, hn::MulAdd(dx, dx, dy * dy));
                       const V p = term.summand(d, dx, dy, load_j(task.fluid.excess + j));
                       pressure = hn::MulAdd(w, p, pressure);
                       weight = weight + w;
                     });
-      store_quotient(pressure, weight, task.density_sum + slot);
+      T above[B::i_count] = {};
+      T below[B::i_count] = {};
+      add_lanes(pressure, above);
+      add_lanes(weight, below);
+      for (std::size_t i = 0; i < B::i_count; ++i) {
+        task.sums[slot + i] = below[i] > T{0} ? above[i] / below[i] : T{0};
+      }
     }
   }
 }
 
-/// eq. 10 for the clusters of a chunk.
+/// Numerator and divisor of eq. 10 for the clusters of a chunk, in kDensitySum and kXSum.
 template <class Shape, typename T>
 void sum_reinitialisation(const SweepTask<T>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
   const TileShift<T> shift(task.constants->tile_size);
+  std::fill_n(task.sums, kSumStride * task.to_fluid->places(), T{});
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
       const std::size_t slot = kCluster * (task.first_cluster + c) + part;
       const V x_i = load_i(task.self.x + slot);
       const V y_i = load_i(task.self.y + slot);
+      const V volume_i = load_i(task.self.volume + slot);
+      const V numerator_i = ShepardTerm::numerator(load_i(task.self.excess + slot), volume_i);
       V excess = hn::Zero(d);
       V weight = hn::Zero(d);
-      const auto add = [&](const PairList::Chunk& list, const PairView<T>& other) HWY_ATTR {
-        for_each_pair(list.entries.data() + list.begin[c], list.entries.data() + list.begin[c + 1],
-                      other, shift, x_i, y_i, [&](std::size_t j, V dx, V dy) HWY_ATTR {
+      const auto add = [&]<Share kShare>(const PairList::Chunk& list,
+                                         const PairView<T>& other) HWY_ATTR {
+        for_each_pair(list, c, other, shift, x_i, y_i,
+                      [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t of_j) HWY_ATTR {
                         const V w = Shape::value(d, hn::MulAdd(dx, dx, dy * dy));
                         const V volume = load_j(other.volume + j);
                         const V s = ShepardTerm::numerator(load_j(other.excess + j), volume);
                         excess = hn::MulAdd(w, s, excess);
                         weight = hn::MulAdd(w, volume, weight);
+                        if constexpr (kShare == Share::both) {
+                          const V minus_w = hn::Neg(w);
+                          subtract_from_j<kDensitySum>(place_of(task.sums, list, n, of_j),
+                                                       minus_w * numerator_i, minus_w * volume_i);
+                        }
                       });
       };
-      add(*task.to_fluid, task.fluid);
-      if (task.to_wall != nullptr) add(*task.to_wall, task.wall);
-      store_quotient(excess, weight, task.density_sum + slot);
+      add.template operator()<Share::both>(*task.to_fluid, task.fluid);
+      if (task.to_wall != nullptr) {
+        add.template operator()<Share::i_alone>(*task.to_wall, task.wall);
+      }
+      T* const sums = task.sums + kSumStride * c + part;
+      add_lanes(excess, sums + kDensitySum);
+      add_lanes(weight, sums + kXSum);
     }
   }
 }

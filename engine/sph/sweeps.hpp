@@ -38,17 +38,16 @@ struct TermConstants {
 /// One chunk of clusters i against the clusters j of its lists.
 template <typename T>
 struct SweepTask {
-  PairView<T> self;   ///< the set of i
-  PairView<T> fluid;  ///< j of `to_fluid`
-  PairView<T> wall;   ///< j of `to_wall`
-  const PairList::Chunk* to_fluid = nullptr;
-  const PairList::Chunk* to_wall = nullptr;  ///< null without walls
+  PairView<T> self;                           ///< the set of i
+  PairView<T> fluid;                          ///< j of `to_fluid`
+  PairView<T> wall;                           ///< j of `to_wall`
+  const PairList::Chunk* to_fluid = nullptr;  ///< mutual, but not for the wall pressure
+  const PairList::Chunk* to_wall = nullptr;   ///< null without walls
   std::size_t first_cluster = 0;
   std::size_t clusters = 0;
   const TermConstants<T>* constants = nullptr;
-  T* density_sum = nullptr;  ///< per slot: out of the pair sums, before their common scale
-  T* x_sum = nullptr;
-  T* y_sum = nullptr;
+  T* sums = nullptr;  ///< out: per place of `to_fluid`, before their common scale (SumBlock); for
+                      ///< the wall pressure one value per slot
 };
 
 /// A chunk of clusters i whose list of possible neighbours among the clusters j is wanted.
@@ -71,8 +70,8 @@ struct Sweeps {
   Sweep density_and_acceleration = nullptr;  ///< eqs. 4, 5, 7, 8 in one sweep
   Sweep density = nullptr;                   ///< eqs. 4, 7
   Sweep acceleration = nullptr;              ///< eqs. 5, 8
-  Sweep wall_pressure = nullptr;             ///< eq. 9: density_sum = s of the wall particle
-  Sweep reinitialise = nullptr;              ///< eq. 10: density_sum = new s
+  Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
+  Sweep reinitialise = nullptr;              ///< eq. 10: kDensitySum over kXSum is the new s
   /// Keeps the candidates that hold a particle within cut-off plus both reaches of one of cluster
   /// i.
   std::size_t (*prune)(const PruneTask<T>&) = nullptr;

@@ -35,6 +35,11 @@ struct Continuity {
   static HWY_INLINE V add_to(V summand, const PairGeometry<V>& pair, V density_i) {
     return hn::NegMulAdd(density_i, pair.approach, summand);
   }
+  /// The same for particle j before -V_i g; `exchange` is what diffuses from j to i.
+  template <class V>
+  static HWY_INLINE V add_for_j(V exchange, const PairGeometry<V>& pair, V density_j) {
+    return hn::MulAdd(density_j, pair.approach, exchange);
+  }
 };
 
 /// Density diffusion, eq. 7 with the neighbour's volume: 2 delta h c sum_j (psi_j - psi_i) V_j x_ji

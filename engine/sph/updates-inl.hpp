@@ -83,11 +83,18 @@ void kick(const ParticleSpan& p, const Rates<T>& rates, double dt) {
 
 template <typename T>
 void write_pairs(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+  using D = hn::CappedTag<double, kCluster>;
+  const D d;
+  const hn::Rebind<T, D> d_out;
   const auto relative = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT x,
                             const double* HWY_RESTRICT origin) HWY_ATTR {
-    for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
-      for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
-        to[s] = static_cast<T>((x[s] - origin[c]) * k.inverse_length);
+    const auto scale = hn::Set(d, k.inverse_length);
+    for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+      const auto value = (hn::LoadU(d, x + s) - hn::Set(d, origin[s / kCluster])) * scale;
+      if constexpr (std::is_same_v<T, double>) {
+        hn::StoreU(value, d_out, to + s);
+      } else {
+        hn::StoreU(hn::DemoteTo(d_out, value), d_out, to + s);
       }
     }
   };
@@ -103,11 +110,11 @@ void write_pairs(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out)
   T* HWY_RESTRICT volume = out.volume.data();
   T* HWY_RESTRICT stress = out.stress.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {
-    const double s = p.density_excess[i] * k.inverse_density;
-    const double v = 1.0 / (1.0 + s);
-    excess[i] = static_cast<T>(s);
-    volume[i] = static_cast<T>(v);
-    stress[i] = static_cast<T>(s * v * v);
+    const T s = static_cast<T>(p.density_excess[i] * k.inverse_density);
+    const T v = T{1} / (T{1} + s);
+    excess[i] = s;
+    volume[i] = v;
+    stress[i] = s * v * v;
   }
   if (out.diffused.size() == 0) return;
   T* HWY_RESTRICT diffused = out.diffused.data();
@@ -171,6 +178,15 @@ inline void measure(const ParticleSpan& p, const Box& domain, double ahead, Moti
   out.moved = !hn::AllFalse(d, moved);
   out.outside = !hn::AllFalse(d, outside);
   out.finite = hn::AllFalse(d, broken);
+  if (p.ax == nullptr) return;
+  V largest = hn::Zero(d);
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const auto used = at(p.reach, s) < hn::Set(d, kNoReach);
+    const V ax = at(p.ax, s);
+    const V ay = at(p.ay, s);
+    largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
+  }
+  out.acceleration_sq = hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
 template <typename T>
