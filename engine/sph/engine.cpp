@@ -64,7 +64,7 @@ class Engine final : public Solver::Impl {
   void set_reach();
   void bind();
   void place_sums();
-  [[nodiscard]] std::uint32_t most_neighbours() const;
+  [[nodiscard]] std::uint32_t most_neighbours();
 
   // Passes.
   void step_leap_frog();
@@ -173,7 +173,7 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
     y[i] = walls[i].y();
     id[i] = static_cast<double>(i);
   }
-  wall_layout_ = sort_into_clusters(grid_, x, y, id, all);
+  wall_layout_ = sort_into_clusters(team_, grid_, x, y, id, all);
   const std::size_t slots = wall_layout_.slots();
   resize_pairs(walls_, slots);
   wall_excess_.resize(slots);
@@ -189,7 +189,7 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
     slot_y[s] = y[i];
     slot_id[s] = id[i];
   }
-  wall_bounds_.assign(grid_, wall_layout_, h, slot_x.data(), slot_y.data(), no_reach.data(),
+  wall_bounds_.assign(team_, grid_, wall_layout_, h, slot_x.data(), slot_y.data(), no_reach.data(),
                       slot_id.data());
   if (walls_.diffused.size() > 0) wall_hydrostatic_.assign(slots, 0.0);
   for (std::size_t s = 0; s < slots; ++s) {
@@ -234,7 +234,8 @@ void Engine<T>::load(const SolverState& state) {
   std::vector<std::uint32_t> all(particle_count);
   std::iota(all.begin(), all.end(), 0U);
   particles = std::move(source);
-  reorder(sort_into_clusters(grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
+  reorder(
+      sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
   if (fresh) set_reach();
   bind();
   measure(0.0);
@@ -335,7 +336,7 @@ void Engine<T>::sort() {
     (method.domain.contains(particles.position(s)) ? use : gone).push_back(s);
   }
   retire(gone);
-  reorder(sort_into_clusters(grid_, particles.x, particles.y, particles.id, use));
+  reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id, use));
   particles.x_sorted = particles.x;
   particles.y_sorted = particles.y;
   set_reach();
@@ -382,12 +383,14 @@ template <typename T>
 void Engine<T>::set_reach() {
   const double h = method.smoothing_length;
   const double time_span = kReachMargin * kListLifetime * h / method.sound_speed;
-  for (std::size_t s = 0; s < layout.slots(); ++s) {
-    if (particles.id[s] < 0.0) continue;
-    const double path = particles.velocity(s).norm() * time_span;
-    // In this order a speed that is not a number gives the longest reach, and the guards see it.
-    particles.reach[s] = std::min(kMostReach * h, kLeastReach * h + path);
-  }
+  for_chunks([&](const ParticleSpan& p, Motion&) {
+    for (std::size_t s = p.begin; s < p.end; ++s) {
+      if (particles.id[s] < 0.0) continue;
+      const double path = particles.velocity(s).norm() * time_span;
+      // In this order a speed that is not a number gives the longest reach, and the guards see it.
+      particles.reach[s] = std::min(kMostReach * h, kLeastReach * h + path);
+    }
+  });
 }
 
 /// Everything that follows from the order: tiles, bounds, lists and pair arrays.
@@ -395,20 +398,20 @@ template <typename T>
 void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
   const double h = method.smoothing_length;
-  bounds.assign(grid_, layout, h, particles.x_sorted.data(), particles.y_sorted.data(),
+  bounds.assign(team_, grid_, layout, h, particles.x_sorted.data(), particles.y_sorted.data(),
                 particles.reach.data(), particles.id.data());
   origin_x_.resize(layout.clusters());
   origin_y_.resize(layout.clusters());
-  for (std::size_t c = 0; c < layout.clusters(); ++c) {
-    const Vec origin = grid_.tile_center(bounds.tile[c]);
-    origin_x_[c] = origin.x();
-    origin_y_[c] = origin.y();
-  }
   resize_pairs(pairs_, slots);
   for (auto* sum : {&density_sum_, &x_sum_, &y_sum_}) sum->resize(slots);
 
   // Lists hold for the sorted places.
   for_chunks([&](ParticleSpan p, Motion&) {
+    for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
+      const Vec origin = grid_.tile_center(bounds.tile[c]);
+      origin_x_[c] = origin.x();
+      origin_y_[c] = origin.y();
+    }
     for (std::size_t s = p.begin; s < p.end; ++s) {
       pairs_.reach[s] = static_cast<T>(
           particles.id[s] < 0.0 ? 0.0 : (particles.reach[s] / h) * (1.0 + kListSlack) + kListSlack);
@@ -449,21 +452,26 @@ void Engine<T>::place_sums() {
 
 /// Exact where lists are long enough to hold too many neighbours, else the bound that they give.
 template <typename T>
-std::uint32_t Engine<T>::most_neighbours() const {
+std::uint32_t Engine<T>::most_neighbours() {
   const auto& lists = fluid_to_fluid_.chunks;
-  std::vector<std::uint32_t> met(layout.clusters(), 0);
-  std::uint32_t most = 0;
-  for (std::size_t k = 0; k < lists.size(); ++k) {
+  // Entries that a cluster takes part in, per place of each chunk.
+  std::vector<std::vector<std::uint32_t>> met(lists.size());
+  team_.run(lists.size(), [&](std::size_t k) {
+    met[k].assign(lists[k].places(), 0);
+    for (const std::uint32_t target : lists[k].targets) ++met[k][target];
     for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) {
-      const std::uint32_t count = lists[k].begin[c + 1] - lists[k].begin[c];
-      met[kChunk * k + c] += count;
-      if (count == 0) continue;
-      for (std::uint32_t e = lists[k].begin[c] + 1; e < lists[k].begin[c + 1]; ++e) {
-        ++met[lists[k].entries[e] & PairList::kClusterMask];
-      }
+      met[k][c] += lists[k].begin[c + 1] - lists[k].begin[c];
     }
-  }
-  for (const std::uint32_t m : met) most = std::max(most, m * static_cast<std::uint32_t>(kCluster));
+  });
+  std::vector<std::uint32_t> most_of(lists.size(), 0);
+  team_.run(lists.size(), [&](std::size_t k) {
+    std::array<std::uint32_t, kChunk> all{};
+    for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) all[c] = met[k][c];
+    for (const Arrival& a : arrivals_[k]) all[a.cluster] += met[a.chunk][a.place];
+    most_of[k] = *std::max_element(all.begin(), all.end()) * static_cast<std::uint32_t>(kCluster);
+  });
+  std::uint32_t most = 0;
+  for (const std::uint32_t m : most_of) most = std::max(most, m);
   if (most <= kManyNeighbours) return most;
 
   // A neighbour in another tile is left out of this count.

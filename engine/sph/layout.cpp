@@ -10,6 +10,7 @@ namespace {
 constexpr double kMaxCells = 1 << 20;     // of one direction
 constexpr double kSingleTile = 1024.0;    // smoothing lengths
 constexpr double kTile = 512.0;           // smoothing lengths
+constexpr std::size_t kBlock = 1024;      // particles or cells to a task
 constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
 
 }  // namespace
@@ -46,32 +47,43 @@ Vec Grid::tile_center(Tile tile) const {
   return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
 }
 
-Layout sort_into_clusters(const Grid& grid, std::span<const double> x, std::span<const double> y,
-                          std::span<const double> id, std::span<const std::uint32_t> use) {
-  // Counting sort by cell, then insertion sort by x inside it: linear, and fast on what is nearly
-  // sorted.
+Layout sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const double> x,
+                          std::span<const double> y, std::span<const double> id,
+                          std::span<const std::uint32_t> use) {
+  // Counting sort by cell, then insertion sort by x inside it: linear.
   std::vector<std::uint32_t> cell(use.size());
+  team.run((use.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min(use.size(), kBlock * (block + 1));
+    for (std::size_t k = kBlock * block; k < end; ++k) {
+      const std::uint32_t p = use[k];
+      cell[k] = static_cast<std::uint32_t>(grid.strip(y[p]) * grid.bins() + grid.bin(x[p]));
+    }
+  });
   std::vector<std::uint32_t> first(grid.strips() * grid.bins() + 1, 0);
-  for (std::size_t k = 0; k < use.size(); ++k) {
-    const std::uint32_t p = use[k];
-    cell[k] = static_cast<std::uint32_t>(grid.strip(y[p]) * grid.bins() + grid.bin(x[p]));
-    ++first[cell[k] + 1];
-  }
+  for (const std::uint32_t c : cell) ++first[c + 1];
   for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
 
   std::vector<std::uint32_t> order(use.size());
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (std::size_t k = 0; k < use.size(); ++k) order[next[cell[k]]++] = use[k];
+
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     if (x[a] != x[b]) return x[a] < x[b];
     return std::tie(y[a], id[a]) < std::tie(y[b], id[b]);
   };
-  for (std::size_t k = 0; k < use.size(); ++k) {
-    std::uint32_t place = next[cell[k]]++;
-    for (; place > first[cell[k]] && before(use[k], order[place - 1]); --place) {
-      order[place] = order[place - 1];
+  const std::size_t cells = first.size() - 1;
+  team.run((cells + kBlock - 1) / kBlock, [&](std::size_t block) {
+    for (std::size_t c = kBlock * block; c < std::min(cells, kBlock * (block + 1)); ++c) {
+      for (std::uint32_t k = first[c] + 1; k < first[c + 1]; ++k) {
+        const std::uint32_t p = order[k];
+        std::uint32_t place = k;
+        for (; place > first[c] && before(p, order[place - 1]); --place) {
+          order[place] = order[place - 1];
+        }
+        order[place] = p;
+      }
     }
-    order[place] = use[k];
-  }
+  });
 
   Layout layout;
   layout.source.reserve(use.size() + use.size() / 8 + kCluster * (grid.strips() + kWholeVectors));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/sph/pair_arrays.hpp"
+#include "engine/sph/thread_team.hpp"
 #include "engine/sph/vec.hpp"
 
 namespace sluice {
@@ -70,8 +71,9 @@ struct Layout {
 
 /// Orders the particles by (strip, x, y, id). The order of the input changes nothing. `use` holds
 /// the particles to place.
-[[nodiscard]] Layout sort_into_clusters(const Grid& grid, std::span<const double> x,
-                                        std::span<const double> y, std::span<const double> id,
+[[nodiscard]] Layout sort_into_clusters(ThreadTeam& team, const Grid& grid,
+                                        std::span<const double> x, std::span<const double> y,
+                                        std::span<const double> id,
                                         std::span<const std::uint32_t> use);
 
 }  // namespace sluice

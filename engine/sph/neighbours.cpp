@@ -98,18 +98,22 @@ void assign_places(std::size_t first, std::size_t count, std::size_t clusters,
 
 }  // namespace
 
-void ClusterBounds::assign(const Grid& grid, const Layout& layout, double smoothing_length,
-                           const double* x, const double* y, const double* reach_of,
-                           const double* id) {
+void ClusterBounds::assign(ThreadTeam& team, const Grid& grid, const Layout& layout,
+                           double smoothing_length, const double* x, const double* y,
+                           const double* reach_of, const double* id) {
   constexpr float kHuge = std::numeric_limits<float>::max();
   const std::size_t clusters = layout.clusters();
-  for (auto* a : {&x_min, &y_min}) a->assign(clusters, kHuge);
-  for (auto* a : {&x_max, &y_max}) a->assign(clusters, -kHuge);
-  reach.assign(clusters, 0.0F);
-  tile.assign(clusters, {});
-  for (std::size_t c = 0; c < clusters; ++c) {
+  for (auto* a : {&x_min, &x_max, &y_min, &y_max, &reach}) a->resize(clusters);
+  tile.resize(clusters);
+  const auto bound = [&](std::size_t c) {
     const std::size_t first = kCluster * c;
-    if (id[first] < 0.0) continue;
+    if (id[first] < 0.0) {
+      x_min[c] = y_min[c] = kHuge;
+      x_max[c] = y_max[c] = -kHuge;
+      reach[c] = 0.0F;
+      tile[c] = {};
+      return;
+    }
     double left = x[first], right = left, bottom = y[first], top = bottom, most = reach_of[first];
     for (std::size_t s = first + 1; s < first + kCluster && id[s] >= 0.0; ++s) {
       left = std::min(left, x[s]);
@@ -124,7 +128,10 @@ void ClusterBounds::assign(const Grid& grid, const Layout& layout, double smooth
     y_min[c] = outwards(bottom / smoothing_length, -kHuge);
     y_max[c] = outwards(top / smoothing_length, kHuge);
     reach[c] = static_cast<float>(most / smoothing_length);
-  }
+  };
+  team.run((clusters + kChunk - 1) / kChunk, [&](std::size_t task) {
+    for (std::size_t c = kChunk * task; c < std::min(clusters, kChunk * (task + 1)); ++c) bound(c);
+  });
   const std::size_t strips = layout.strip_begin.size() - 1;
   strip_y_min.assign(strips, kHuge);
   strip_y_max.assign(strips, -kHuge);

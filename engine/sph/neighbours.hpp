@@ -20,8 +20,8 @@ struct ClusterBounds {
   std::vector<float> strip_y_min, strip_y_max, strip_reach;
 
   /// Positions and reaches per slot in m; empty slots have id < 0.
-  void assign(const Grid& grid, const Layout& layout, double smoothing_length, const double* x,
-              const double* y, const double* reach_of, const double* id);
+  void assign(ThreadTeam& team, const Grid& grid, const Layout& layout, double smoothing_length,
+              const double* x, const double* y, const double* reach_of, const double* id);
 };
 
 /// A set of particles as the search sees it.
