@@ -8,7 +8,6 @@
 #include "service/admission.hpp"
 #include "service/queue_view.hpp"
 #include "service/scheduler_board.hpp"
-#include "service/scheduler_clock.hpp"
 #include "service/scheduler_loop.hpp"
 
 namespace sluice {
@@ -31,11 +30,12 @@ std::string ahead_text(std::size_t count) {
 class Scheduler::Impl {
  public:
   Impl(JobStore& store, const std::filesystem::path& data, const ServiceLimits& limits,
-       const std::filesystem::path& worker)
+       const std::filesystem::path& worker, const SchedulerSenses& senses)
       : store_(store),
         limits_(limits),
+        clock_(senses.clock),
         queue_(store),
-        loop_(store, std::filesystem::absolute(data), limits, worker, queue_, board_),
+        loop_(store, std::filesystem::absolute(data), limits, worker, senses, queue_, board_),
         thread_([this] {
           loop_.run();
           board_.note_drained();
@@ -68,7 +68,7 @@ class Scheduler::Impl {
       return fmt::format("the disk of the service has less than {} MiB free",
                          limits_.disk_reserve >> 20);
     }
-    const double now = scheduler_clock();
+    const double now = clock_();
     if (const auto wait = status.back_offs.find(job.id, now)) return wait_text(*wait, now);
     return place_text(job, status, now);
   }
@@ -95,6 +95,7 @@ class Scheduler::Impl {
 
   JobStore& store_;
   ServiceLimits limits_;
+  std::function<double()> clock_;
   QueueView queue_;
   SchedulerBoard board_;
   SchedulerLoop loop_;
@@ -102,8 +103,9 @@ class Scheduler::Impl {
 };
 
 Scheduler::Scheduler(JobStore& store, const std::filesystem::path& data,
-                     const ServiceLimits& limits, const std::filesystem::path& worker)
-    : impl_(std::make_unique<Impl>(store, data, limits, worker)) {}
+                     const ServiceLimits& limits, const std::filesystem::path& worker,
+                     const SchedulerSenses& senses)
+    : impl_(std::make_unique<Impl>(store, data, limits, worker, senses)) {}
 
 Scheduler::~Scheduler() = default;
 

@@ -7,6 +7,7 @@
 
 #include "service/job_store.hpp"
 #include "service/sandbox.hpp"
+#include "service/scheduler_senses.hpp"
 
 namespace sluice {
 
@@ -37,9 +38,10 @@ class Scheduler {
  public:
   /// At start: jobs that are marked running are completed, requeued or failed by what their folder
   /// says. Where a worker that outlived the last service still holds the folder's lock, that waits
-  /// until it is gone. `worker` is the program to start, for tests; empty: this one.
+  /// until it is gone. `worker` is the program to start; empty: this one. It and `senses` are for
+  /// tests.
   Scheduler(JobStore& store, const std::filesystem::path& data, const ServiceLimits& limits,
-            const std::filesystem::path& worker = {});
+            const std::filesystem::path& worker = {}, const SchedulerSenses& senses = {});
   /// Drains: asks every worker for a checkpoint, waits for them, and puts the jobs back into the
   /// queue.
   ~Scheduler();

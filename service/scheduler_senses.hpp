@@ -1,0 +1,24 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "service/disk_guard.hpp"
+
+namespace sluice {
+
+/// What the scheduler perceives of the machine. Tests put their own in its place; several threads
+/// call these at once.
+struct SchedulerSenses {
+  /// Seconds of a clock that never steps back.
+  std::function<double()> clock = [] {
+    using Seconds = std::chrono::duration<double>;
+    return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  };
+  /// Bytes that may still be written on the disk of a folder.
+  std::function<std::uint64_t(const std::filesystem::path&)> free_disk = sluice::free_disk;
+};
+
+}  // namespace sluice
