@@ -23,7 +23,8 @@ JobData::JobData(const std::filesystem::path& folder) : paths_(folder) {
 }
 
 Scene JobData::scene() const {
-  return parse_scene_or_end(read_text(paths_.scene(), kMaxSceneBytes + 1), paths_.scene());
+  return parse_scene_or_end(read_text(paths_.scene(), kMaxSceneBytes + 1), paths_.scene(),
+                            StabilityCheck::skip);
 }
 
 std::vector<Series> JobData::series() const {

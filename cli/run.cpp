@@ -49,7 +49,7 @@ std::string folder_name(const std::string& scene_name) {
 /// The folder holds this very scene, or one that only ends at another time or has another name.
 void adopt_scene(JobFolder& folder, const SceneFile& wanted) {
   const fs::path path = folder.paths().scene();
-  const Scene present = parse_scene_or_end(folder.scene_text(), path);
+  const Scene present = parse_scene_or_end(folder.scene_text(), path, StabilityCheck::skip);
   if (identity_text(present) != identity_text(wanted.scene)) {
     throw CommandEnd(ExitCode::invalid_scene,
                      fmt::format("{} holds a run of another scene: choose another folder with "
@@ -68,7 +68,8 @@ struct Job {
 
 Job open_job(const fs::path& root) {
   JobFolder folder = JobFolder::open(root);
-  Scene scene = parse_scene_or_end(folder.scene_text(), folder.paths().scene());
+  Scene scene =
+      parse_scene_or_end(folder.scene_text(), folder.paths().scene(), StabilityCheck::skip);
   return {std::move(folder), std::move(scene)};
 }
 

@@ -23,8 +23,9 @@ std::string read_scene_text(const std::filesystem::path& path) {
 
 }  // namespace
 
-Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where) {
-  ParseResult result = parse_scene(text);
+Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where,
+                         StabilityCheck stability) {
+  ParseResult result = parse_scene(text, stability);
   if (result.scene) return *std::move(result.scene);
   for (const Problem& problem : result.problems) {
     fmt::print(stderr, "{}: {}: {}\n", where.string(),
@@ -39,7 +40,7 @@ Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& whe
 SceneFile read_scene(const std::filesystem::path& path) {
   SceneFile file;
   file.text = read_scene_text(path);
-  file.scene = parse_scene_or_end(file.text, path);
+  file.scene = parse_scene_or_end(file.text, path, StabilityCheck::refuse);
   return file;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/scene/parse.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace sluice {
@@ -18,7 +19,9 @@ struct SceneFile {
 /// and throws CommandEnd(invalid_scene) when there are any.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& path);
 
-/// The same for a text that stands in `where`.
-[[nodiscard]] Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where);
+/// The same for a text that stands in `where`. What stands in a job's folder was checked when the
+/// folder was made: StabilityCheck::skip there, so that no job becomes unreadable.
+[[nodiscard]] Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where,
+                                       StabilityCheck stability);
 
 }  // namespace sluice

@@ -14,6 +14,7 @@
 #include "engine/scene/initial.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/scene/plan.hpp"
+#include "engine/scene/stability.hpp"
 #include "engine/store/file_system.hpp"
 
 namespace sluice {
@@ -71,7 +72,7 @@ void print_items(std::string_view title, const std::vector<PlanItem>& items) {
   }
 }
 
-void print_plan(const Plan& plan, const Estimate& estimate,
+void print_plan(const Plan& plan, const Estimate& estimate, const StabilityPrediction& outlook,
                 const std::optional<Calibration>& trial) {
   print_items("passes and terms that run", plan.passes);
   print_items("left out", plan.passes_left_out);
@@ -84,6 +85,7 @@ void print_plan(const Plan& plan, const Estimate& estimate,
   fmt::print("  {} of memory, {} on disk, {} samples, {} frames\n",
              size_text(estimate.memory_bytes), size_text(estimate.disk_bytes), estimate.samples,
              estimate.frames);
+  fmt::print("stability\n  {}\n", stability_text(outlook));
   if (!trial) return;
   fmt::print(
       "  {} on {} threads, from a trial of {} s ({:.1f} million particle steps per second)\n",
@@ -91,10 +93,11 @@ void print_plan(const Plan& plan, const Estimate& estimate,
       kTrialSeconds, trial->particle_steps_per_second * 1e-6);
 }
 
-void print_plan_json(const Plan& plan, const Estimate& estimate,
+void print_plan_json(const Plan& plan, const Estimate& estimate, const StabilityPrediction& outlook,
                      const std::optional<Calibration>& trial) {
   Json object{{"plan", Json::parse(plan_json(plan))},
-              {"estimate", Json::parse(estimate_json(estimate))}};
+              {"estimate", Json::parse(estimate_json(estimate))},
+              {"stability", Json::parse(stability_json(outlook))}};
   object["calibration"] = nullptr;
   if (trial) {
     object["calibration"] =
@@ -121,7 +124,8 @@ void show_plan(const SceneArguments& arguments) {
                        fmt::format("the trial failed: {}", failure.what()));
     }
   }
-  (arguments.json ? print_plan_json : print_plan)(plan(scene), needs, trial);
+  (arguments.json ? print_plan_json : print_plan)(plan(scene), needs, predict_stability(scene),
+                                                  trial);
 }
 
 /// All problems as JSON on stdout: for editors and scripts.

@@ -8,6 +8,7 @@
 
 #include "engine/scene/initial.hpp"
 #include "engine/scene/parse.hpp"
+#include "engine/scene/stability.hpp"
 #include "service/problem.hpp"
 
 namespace sluice {
@@ -79,11 +80,12 @@ Admitted admit_scene(std::string_view text, const ServiceLimits& limits) {
   return admitted;
 }
 
-Json estimate_document(const Estimate& estimate, int threads) {
+Json estimate_document(const Scene& scene, const Estimate& estimate, int threads) {
   Json document = Json::parse(estimate_json(estimate));
   const double particle_steps =
       static_cast<double>(estimate.fluid_particles) * static_cast<double>(estimate.steps);
   document["seconds"] = particle_steps / (kParticleStepsPerSecond * std::max(threads, 1));
+  document["stability"] = Json::parse(stability_json(predict_stability(scene)));
   return document;
 }
 

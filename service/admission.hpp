@@ -20,8 +20,10 @@ struct Admitted {
 /// problem as {pointer, detail}, over_limit with every limit that it breaks.
 [[nodiscard]] Admitted admit_scene(std::string_view text, const ServiceLimits& limits);
 
-/// particles, steps, memory, disk and about how long it takes on `threads` threads.
-[[nodiscard]] nlohmann::ordered_json estimate_document(const Estimate& estimate, int threads);
+/// particles, steps, memory, disk, about how long it takes on `threads` threads, and how far the
+/// Courant number is from the largest stable one.
+[[nodiscard]] nlohmann::ordered_json estimate_document(const Scene& scene, const Estimate& estimate,
+                                                       int threads);
 
 /// Bytes of memory that one job may take: the limit, or three quarters of the machine's.
 [[nodiscard]] std::uint64_t memory_limit(const ServiceLimits& limits);

@@ -127,7 +127,7 @@ Job new_job(ApiContext& context, const Admitted& admitted, const SubmitOptions& 
   job.created_ms = unix_time_ms();
   job.scene_hash = scene_hash(identity_text(admitted.scene));
   job.end_time = admitted.scene.end_time;
-  job.estimate = estimate_document(admitted.estimate, options.threads).dump();
+  job.estimate = estimate_document(admitted.scene, admitted.estimate, options.threads).dump();
   return job;
 }
 
@@ -149,8 +149,9 @@ Response make_job(ApiContext& context, const Request& request, const SubmitOptio
 Response show_plan(const ApiContext& context, const Request& request,
                    const SubmitOptions& options) {
   const Admitted admitted = admit_scene(request.body, context.scheduler.limits());
-  return json_response(200, {{"plan", Json::parse(plan_json(plan(admitted.scene)))},
-                             {"estimate", estimate_document(admitted.estimate, options.threads)}});
+  return json_response(
+      200, {{"plan", Json::parse(plan_json(plan(admitted.scene)))},
+            {"estimate", estimate_document(admitted.scene, admitted.estimate, options.threads)}});
 }
 
 }  // namespace

@@ -89,7 +89,8 @@ std::optional<JobFile> read_file(const JobPaths& paths, const RebuildReport& rep
 }
 
 Scene read_scene(const JobPaths& paths) {
-  const ParseResult result = parse_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
+  const ParseResult result =
+      parse_scene(read_text(paths.scene(), kMaxSceneBytes + 1), StabilityCheck::skip);
   if (!result.scene) {
     const Problem& problem = result.problems.front();
     throw std::runtime_error(
@@ -100,7 +101,7 @@ Scene read_scene(const JobPaths& paths) {
 
 /// Needs the job's threads.
 void describe_scene(Job& job, const Scene& scene) {
-  job.estimate = estimate_document(estimate(scene), job.threads).dump();
+  job.estimate = estimate_document(scene, estimate(scene), job.threads).dump();
   job.name = scene.name;
   job.end_time = scene.end_time;
   job.scene_hash = scene_hash(identity_text(scene));

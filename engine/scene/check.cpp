@@ -7,6 +7,7 @@
 
 #include "engine/scene/check_shapes.hpp"
 #include "engine/scene/describe.hpp"
+#include "engine/scene/stability.hpp"
 #include "engine/scene/work.hpp"
 
 namespace sluice {
@@ -131,9 +132,25 @@ void check_work(const Scene& scene, Problems& problems) {
   }
 }
 
+/// A scheme whose errors fill the flow within the run is refused; slower growth is only told.
+void check_stability(const Scene& scene, Problems& problems) {
+  const StabilityPrediction p = predict_stability(scene);
+  if (p.outlook != Outlook::unstable) return;
+  const std::string remedy =
+      p.courant_limit > 0.0
+          ? fmt::format("must be at most {:.3g} for this integrator, kernel, alpha and delta",
+                        p.courant_limit)
+          : "no step of this integrator is stable without damping; name "
+            "numerics.artificial_viscosity and numerics.density_diffusion, or use kick_drift_kick";
+  problems.add("/numerics/courant",
+               fmt::format("is {:.6g}; {} (von Neumann analysis: errors would grow by {:.2g} a "
+                           "step, 10^{:.2g} over the run)",
+                           p.courant, remedy, p.growth_per_step, p.growth_decades));
+}
+
 }  // namespace
 
-void check(const Document& document, Problems& problems) {
+void check(const Document& document, StabilityCheck stability, Problems& problems) {
   const Scene& written = document.scene;
   check_polygons(written, problems);
   check_sizes(written, problems);
@@ -152,6 +169,10 @@ void check(const Document& document, Problems& problems) {
   check_domain(scene, document, problems);
   if (problems.clean({"/domain"})) check_sensors(scene, problems);
   if (problems.clean({"/material"})) check_work(scene, problems);
+  if (problems.clean({"/material", "/end_time", "/resolution"}) &&
+      stability == StabilityCheck::refuse) {
+    check_stability(scene, problems);
+  }
 }
 
 }  // namespace sluice

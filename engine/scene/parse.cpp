@@ -7,7 +7,7 @@
 
 namespace sluice {
 
-ParseResult parse_scene(std::string_view text) {
+ParseResult parse_scene(std::string_view text, StabilityCheck stability) {
   Problems problems;
   const auto json = read_json(text, problems);
   if (!json) return {std::nullopt, problems.take()};
@@ -16,7 +16,7 @@ ParseResult parse_scene(std::string_view text) {
   Reader reader(*json, "", problems);
   describe(reader, document);
   reader.finish();
-  if (json->is_object()) check(document, problems);
+  if (json->is_object()) check(document, stability, problems);
 
   if (!problems.empty()) return {std::nullopt, problems.take()};
   return {resolve(document), {}};

@@ -31,10 +31,15 @@ struct ParseResult {
   std::vector<Problem> problems;
 };
 
+/// Whether a scene that linear analysis calls unstable is a problem (stability.hpp). The stability
+/// suite runs such scenes on purpose.
+enum class StabilityCheck { refuse, skip };
+
 /// Reads a scene, fills in every default and checks it. All problems are found at once, as far as
 /// they do not follow from one another, and kMaxProblems of them are named. Nothing is thrown for
 /// bad text, and nothing is allocated in proportion to what the scene asks for.
-[[nodiscard]] ParseResult parse_scene(std::string_view text);
+[[nodiscard]] ParseResult parse_scene(std::string_view text,
+                                      StabilityCheck stability = StabilityCheck::refuse);
 
 /// A scene that reads well but that no particles can be made from.
 class SceneError : public std::runtime_error {

@@ -53,8 +53,11 @@ double expected_time_step(const Scene& scene) {
   double speed = std::sqrt(2 * strength * fluid_height(scene));
   for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.velocity.norm());
   const double sound = method.courant * method.smoothing_length / (method.sound_speed + speed);
-  if (strength == 0.0) return sound;
-  return std::min(sound, kForceFactor * std::sqrt(method.smoothing_length / strength));
+  return std::min(sound, force_time_step(method));
+}
+
+double force_time_step(const Method& method) {
+  return kForceFactor * std::sqrt(method.smoothing_length / method.gravity.norm());
 }
 
 double count_samples(const Scene& scene) {

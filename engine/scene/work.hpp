@@ -20,6 +20,10 @@ namespace sluice {
 /// body acceleration, s. Impacts make shorter steps.
 [[nodiscard]] double expected_time_step(const Scene& scene);
 
+/// 0.25 sqrt(h/|f|), s: what the force limit leaves fluid that falls freely; infinite without
+/// gravity.
+[[nodiscard]] double force_time_step(const Method& method);
+
 /// Samples of all sensors until the end time; one every step where the interval is shorter.
 [[nodiscard]] double count_samples(const Scene& scene);
 [[nodiscard]] double count_frames(const Scene& scene);

@@ -51,9 +51,10 @@ def scene(**changes):
     return result
 
 
-def unstable_scene():
-    numerics = {"integrator": "modified_leap_frog", "courant": 1.9}
-    return scene(numerics=numerics, end_time=5.0)
+def failing_scene():
+    """A column thrown against the wall at nearly the speed of sound: no scheme holds that."""
+    fluid = {"shape": "rectangle", "corner": [0, 0], "size": [0.6, 0.3], "velocity": [23.0, 0.0]}
+    return scene(fluid=[fluid], end_time=5.0)
 
 
 class Sandbox(unittest.TestCase):
@@ -268,8 +269,17 @@ class Signals(Sandbox):
 
 
 class Failures(Sandbox):
-    def test_an_unstable_run_ends_with_a_diagnosis_and_keeps_the_last_good_checkpoint(self):
-        path = self.write_scene(unstable_scene())
+    def test_a_scheme_that_linear_analysis_calls_unstable_is_refused_with_the_limit(self):
+        path = self.write_scene(scene(numerics={
+            "integrator": "modified_leap_frog", "courant": 0.9,
+            "density_diffusion": {"delta": 0.1}, "artificial_viscosity": {"alpha": 0.02}}))
+        for verb in ("validate", "plan", "run"):
+            result = self.expect(3, verb, path)
+            self.assertIn("/numerics/courant: is 0.9; must be at most 0.7", result.stderr)
+        self.assertEqual([entry.name for entry in self.folder.iterdir()], [path.name])
+
+    def test_a_run_that_fails_ends_with_a_diagnosis_and_keeps_the_last_good_checkpoint(self):
+        path = self.write_scene(failing_scene())
         result = self.expect(4, "run", path, "--folder", "job", "--checkpoint-every", 10)
         outcome = self.outcome("job")
         self.assertEqual(outcome["state"], "failed")

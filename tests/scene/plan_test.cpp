@@ -108,6 +108,7 @@ TEST(Estimate, CountsWhatIsMade) {
 TEST(Estimate, ComesCloseForCurvedShapesAndObstacles) {
   json text = base_scene();
   text["resolution"]["spacing"] = 0.005;
+  text["numerics"]["integrator"] = "kick_drift_kick";
   text["fluid"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.5], "radius": 0.4}])");
   text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [1.5, 0.5], "radius": 0.4}])");
   const Scene scene = parsed(text);
@@ -131,7 +132,7 @@ TEST(Estimate, StepsAsEquation18Says) {
 TEST(Estimate, StepsAsTheForceConditionSaysWhereItIsShorter) {
   json text = base_scene();
   text["material"]["sound_speed"] = 5;
-  text["numerics"]["courant"] = 2;
+  text["numerics"] = {{"integrator", "kick_drift_kick"}, {"courant", 2}};
   EXPECT_DOUBLE_EQ(estimate(parsed(text)).time_step,
                    std::min(2 * 0.05 / (5 + std::sqrt(9.81)), 0.25 * std::sqrt(0.05 / 9.81)));
 }

@@ -64,6 +64,22 @@ TEST(ApiSubmit, NamesEveryProblemOfASceneAtOnceAndMakesNothing) {
   EXPECT_TRUE(service.store.list({}).empty());
 }
 
+TEST(ApiSubmit, TellsTheStabilityMarginAndRefusesACourantNumberBeyondTheLimit) {
+  Service service;
+  const Json job = body_of(service.post("/v1/jobs", tiny_scene(0.1)));
+  const Json& stability = job["estimate"]["stability"];
+  EXPECT_EQ(stability["outlook"], "stable");
+  const double limit = stability["courant_limit"];
+  EXPECT_DOUBLE_EQ(stability["margin"].get<double>(), limit / 0.5 - 1.0);
+
+  Json scene = Json::parse(tiny_scene(1.0));
+  scene["numerics"]["integrator"] = "modified_leap_frog";
+  scene["numerics"]["courant"] = 1.0;
+  const Response refused = service.post("/v1/jobs", scene.dump());
+  expect_problem(refused, 422, "invalid-scene");
+  EXPECT_EQ(body_of(refused)["errors"][0]["pointer"], "/numerics/courant");
+}
+
 TEST(ApiSubmit, RefusesRegionsThatOverlap) {
   Service service;
   Json scene = Json::parse(tiny_scene(0.1));
