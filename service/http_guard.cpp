@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -62,6 +63,14 @@ bool has_token(const Request& request, const std::string& token) {
   return value.starts_with(kScheme) && equal_in_constant_time(value.substr(kScheme.size()), token);
 }
 
+/// systemd opens the folder of a service's credentials to that service alone, and may let it read
+/// them by an access list, which shows as the group's bit.
+mode_t forbidden_bits(const std::filesystem::path& path) {
+  const char* const credentials = std::getenv("CREDENTIALS_DIRECTORY");
+  const bool from_systemd = credentials != nullptr && path.parent_path() == credentials;
+  return from_systemd ? 037U : 077U;
+}
+
 [[noreturn]] void refuse_token(const std::filesystem::path& path, std::string_view why) {
   throw std::runtime_error(
       fmt::format("token file {}: {}; make one with: (umask 077; openssl rand -hex 32 > {})",
@@ -107,7 +116,8 @@ std::string read_token_file(const std::filesystem::path& path) {
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
     refuse_token(path, "it is no regular file");
   }
-  if ((status.st_mode & 077U) != 0) refuse_token(path, "others may read it: chmod 600");
+  if ((status.st_mode & forbidden_bits(path)) != 0)
+    refuse_token(path, "others may read it: chmod 600");
   std::array<char, kLongestToken + 2> bytes{};
   const auto count = ::read(file.get(), bytes.data(), bytes.size());
   std::string token(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));

@@ -48,14 +48,23 @@ Meaning meaning_of(int result, int system_error) {
   }
 }
 
+/// Absolute, so that it is never taken for a URI or a name like ":memory:". SQLITE_OPEN_NOFOLLOW
+/// refuses links in all of a path, but only the file itself must be none: systemd keeps the folders
+/// of services behind a link, and so may anybody whose data are on another disk.
+std::string name_for_sqlite(const std::filesystem::path& path) {
+  const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+  std::error_code missing;
+  const std::filesystem::path folder = std::filesystem::canonical(whole.parent_path(), missing);
+  return (missing ? whole : folder / whole.filename()).string();
+}
+
 }  // namespace
 
 SqliteDb::SqliteDb(std::filesystem::path path) : path_(std::move(path)) {
   // One thread at a time is the caller's promise, so SQLite needs no locks of its own.
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX |
                     SQLITE_OPEN_NOFOLLOW | SQLITE_OPEN_EXRESCODE;
-  // An absolute path is never taken for a URI or a name like ":memory:".
-  const std::string name = std::filesystem::absolute(path_).lexically_normal().string();
+  const std::string name = name_for_sqlite(path_);
   const int result = ::sqlite3_open_v2(name.c_str(), &handle_, flags, nullptr);
   if (result != SQLITE_OK) {
     try {

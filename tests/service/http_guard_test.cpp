@@ -74,6 +74,21 @@ TEST(HttpGuard, ComparesWholeTexts) {
   EXPECT_FALSE(equal_in_constant_time("Secret", "secret"));
 }
 
+TEST(HttpGuard, ReadsACredentialOfSystemdThatAnAccessListOpensToTheService) {
+  const DataFolder data;
+  const fs::path path = data.path() / "token";
+  write_file(path, "0123456789abcdef\n");
+  fs::permissions(path, fs::perms::owner_read | fs::perms::group_read);
+  ASSERT_EQ(::setenv("CREDENTIALS_DIRECTORY", data.path().c_str(), 1), 0);
+  EXPECT_EQ(read_token_file(path), "0123456789abcdef");
+  fs::permissions(path, fs::perms::others_read, fs::perm_options::add);
+  EXPECT_THROW((void)read_token_file(path), std::runtime_error);
+  fs::permissions(path, fs::perms::others_read, fs::perm_options::remove);
+  ASSERT_EQ(::setenv("CREDENTIALS_DIRECTORY", "/elsewhere", 1), 0);
+  EXPECT_THROW((void)read_token_file(path), std::runtime_error);
+  ::unsetenv("CREDENTIALS_DIRECTORY");
+}
+
 TEST(HttpGuard, ReadsTokensOnlyFromFilesThatNobodyElseCanRead) {
   const DataFolder data;
   const fs::path path = data.path() / "token";

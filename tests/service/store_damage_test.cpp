@@ -87,6 +87,18 @@ TEST(DataFolder, ThatIsMissingIsMade) {
   EXPECT_TRUE(fs::is_directory(data.path() / "a" / "b" / "jobs"));
 }
 
+TEST(DataFolder, BehindALinkIsUsedButALinkInPlaceOfTheDataBaseIsNot) {
+  const DataFolder data;
+  const fs::path real = data.path() / "real";
+  fs::create_directories(real / "inner");
+  fs::create_directory_symlink(real, data.path() / "link");
+  { const JobStore store(data.path() / "link" / "inner"); }
+  EXPECT_TRUE(fs::is_regular_file(real / "inner" / "jobs.sqlite"));
+  fs::rename(real / "inner" / "jobs.sqlite", real / "elsewhere");
+  fs::create_symlink(real / "elsewhere", real / "inner" / "jobs.sqlite");
+  EXPECT_THROW(const JobStore store(real / "inner"), JobStoreError);
+}
+
 TEST(DataFolder, ThatCannotBeOneIsRefusedWithItsPath) {
   const DataFolder data;
   write_all(data.path() / "file", "x");
