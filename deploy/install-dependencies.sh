@@ -4,7 +4,8 @@
 #
 #   deploy/install-dependencies.sh            what a build and a run need
 #   deploy/install-dependencies.sh --tests    also what tests/run.sh needs
-#   deploy/install-dependencies.sh --list     prints the names instead (combines with --tests)
+#   deploy/install-dependencies.sh --runtime  only what a program that is built already needs
+#   deploy/install-dependencies.sh --list     prints the names instead (combines with the others)
 set -euo pipefail
 
 build_packages=(
@@ -18,7 +19,11 @@ build_packages=(
   libhwy-dev            # SIMD with run-time dispatch
   libsqlite3-dev        # the service's job rows
   libcpp-httplib-dev    # the service's answers
+  curl ca-certificates  # quickstart.sh
+  sqlite3               # backup.sh
 )
+# The libraries that the build packages bring, by the names of Debian 12.
+runtime_packages=(libhdf5-103-1 libfmt9 libxxhash0 libhwy1 libsqlite3-0 libcpp-httplib0.11)
 test_packages=(
   libgtest-dev libgmock-dev
   librapidcheck-dev     # property tests
@@ -27,13 +32,14 @@ test_packages=(
   python3 python3-jsonschema python3-h5py python3-numpy
 )
 
-usage() { sed -n '2,7s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '2,8s/^# \{0,1\}//p' "$0"; }
 
 packages=("${build_packages[@]}")
 action=install
 for argument in "$@"; do
   case "$argument" in
     --tests) packages+=("${test_packages[@]}") ;;
+    --runtime) packages=("${runtime_packages[@]}") ;;
     --list) action=list ;;
     -h | --help) usage; exit 0 ;;
     *) echo "install-dependencies.sh: unknown argument '$argument'" >&2; usage >&2; exit 2 ;;
