@@ -50,6 +50,7 @@ Json cost_json(const Account& account) {
               {"particle_steps", account.particle_steps},
               {"particle_steps_per_second", account.rate()},
               {"checkpoints", account.checkpoints},
+              {"engine_bytes", account.engine_bytes},
               {"passes", passes}};
 }
 
@@ -99,6 +100,7 @@ Outcome describe_simulation(const Simulation& simulation) {
     outcome.series_digests.emplace_back(series.name, series_digest(series));
   }
   outcome.account.particle_steps = simulation.particle_steps();
+  outcome.account.engine_bytes = solver.memory_bytes();
   outcome.account.pass_seconds = solver.pass_seconds();
   outcome.account.pass_seconds[static_cast<std::size_t>(Pass::sample)] =
       simulation.sample_seconds();

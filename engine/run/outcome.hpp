@@ -23,6 +23,7 @@ struct Account {
   double checkpoint_seconds = 0.0;
   double output_seconds = 0.0;  ///< frames and series.h5
   int checkpoints = 0;
+  std::uint64_t engine_bytes = 0;  ///< state, pair arrays and lists at the end of the attempt
 
   /// Fluid-particle steps per second; 0 when nothing ran.
   [[nodiscard]] double rate() const;

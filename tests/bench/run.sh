@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Speed and memory, printed as tables with the machine's name. Takes about ten minutes; nothing else
+# should run meanwhile. Figures of different machines or days are not to be compared; ratios of one
+# table are.
+#
+#   tests/bench/run.sh              everything below
+#   tests/bench/run.sh speed        schemes x particles x precisions x threads (speed.py)
+#   tests/bench/run.sh targets      the paper's and the recommended scheme on each SIMD target
+#   tests/bench/run.sh left-out     what a scene saves by leaving a term out (left_out_bench.cpp)
+#   tests/bench/run.sh case         the whole dam break to T = 8, core-seconds and errors
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+parts=("$@")
+((${#parts[@]})) || parts=(speed targets left-out case)
+cmake --preset release -DSLUICE_BENCHMARKS=ON >/dev/null
+cmake --build --preset release --target sluice bench_left_out -j "$(nproc)" >/dev/null
+sluice=$PWD/build/release/cli/sluice
+
+for part in "${parts[@]}"; do
+  printf '\n== %s\n' "$part"
+  case "$part" in
+    speed) python3 tests/bench/speed.py "$sluice" schemas/examples ;;
+    targets)
+      for simd in SSE4 AVX2 AVX3; do
+        python3 tests/bench/speed.py "$sluice" schemas/examples --particles 2e4 --threads 1 \
+          --simd "$simd" || echo "$simd does not run here"
+      done
+      ;;
+    left-out)
+      build/release/tests/bench_left_out --benchmark_enable_random_interleaving=true \
+        --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
+      ;;
+    case)
+      folder=$(mktemp -d)
+      trap 'rm -rf "$folder"' EXIT
+      for scene in dambreak-paper dambreak; do
+        for threads in 1 2; do
+          echo "-- $scene, $threads thread(s)"
+          "$sluice" run "schemas/examples/$scene.json" --folder "$folder/$scene-$threads" \
+            --threads "$threads" --progress none
+        done
+        "$sluice" report "$folder/$scene-1" | grep 'mean relative L2'
+      done
+      ;;
+    *) echo "run.sh: unknown part '$part'; see its first lines" >&2; exit 2 ;;
+  esac
+done

@@ -1,0 +1,114 @@
+"""Speed and memory of whole runs, everything included, as one table.
+
+Usage: speed.py SLUICE SCENES [--particles N,N...] [--threads N,N...] [--seconds S]
+                [--repeat R] [--simd TARGET]
+
+For each scene (the paper's and the recommended scheme), each number of particles, precision and
+number of threads: million fluid-particle steps per second, the median of R runs taken in turns
+(machines are noisy: compare lines of one table only), bytes per particle, and the share of each
+pass. A run starts as the scene does and is stopped after about S seconds of a core's work.
+"""
+
+import argparse
+import copy
+import json
+import math
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+
+PASSES = ["sort", "wall_pressure", "pair_sums", "reinitialisation", "update", "sample"]
+SCENES = ["dambreak-paper.json", "dambreak.json"]
+ROUGH_RATE = 1.5e7  # fluid-particle steps per second of a core, to choose the number of steps
+
+
+def numbers(text):
+    return [int(float(word)) for word in text.split(",")]
+
+
+def processor():
+    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as stream:
+        for line in stream:
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def resized(scene, particles):
+    """The scene with about so many fluid particles; sensors sample as often per step as before."""
+    scene = copy.deepcopy(scene)
+    length, height = scene["fluid"][0]["size"]
+    across = max(1, round(math.sqrt(particles * height / length)))
+    spacing = height / across
+    scale = spacing / scene["resolution"]["spacing"]
+    scene["resolution"]["spacing"] = spacing
+    for sensor in scene["sensors"]:
+        sensor["interval"] *= scale
+    scene["output"] = {}
+    return scene
+
+
+def run(program, scene, threads, seconds, simd):
+    length, height = scene["fluid"][0]["size"]
+    particles = length * height / scene["resolution"]["spacing"] ** 2
+    steps = max(40, round(seconds * ROUGH_RATE * threads / particles))
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.json")
+        job = os.path.join(folder, "job")
+        with open(path, "w", encoding="utf-8") as out:
+            json.dump(scene, out)
+        command = [program, "run", path, "--folder", job, "--threads", str(threads), "--progress",
+                   "none", "--no-checkpoint", "--stop-after-step", str(steps)]
+        if simd:
+            command += ["--simd", simd]
+        ended = subprocess.run(command, capture_output=True, text=True, check=False)
+        if ended.returncode not in (0, 85):
+            sys.exit(f"speed.py: {' '.join(command)} ended with {ended.returncode}: {ended.stderr}")
+        with open(os.path.join(job, "outcome.json"), encoding="utf-8") as stream:
+            return json.load(stream)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("scenes")
+    parser.add_argument("--particles", type=numbers, default=numbers("2e4,1e5,5e5,2e6"))
+    parser.add_argument("--threads", type=numbers, default=[1, 2])
+    parser.add_argument("--seconds", type=float, default=5.0)
+    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--simd", default="")
+    options = parser.parse_args()
+
+    cases = []
+    for name in SCENES:
+        with open(os.path.join(options.scenes, name), encoding="utf-8") as stream:
+            scene = json.load(stream)
+        for particles in options.particles:
+            for precision in ("mixed", "double"):
+                sized = resized(scene, particles)
+                sized["numerics"]["precision"] = precision
+                for threads in options.threads:
+                    cases.append((name, precision, threads, sized, []))
+    for _ in range(options.repeat):
+        for _, _, threads, scene, outcomes in cases:
+            outcomes.append(run(options.program, scene, threads, options.seconds, options.simd))
+
+    print(f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; median of "
+          f"{options.repeat}; million fluid-particle steps per second, everything included")
+    print(f"{'scene':<22}{'particles':>10} {'sums':<7}{'threads':>7} {'target':<6}{'M/s':>7}"
+          f"{'B/particle':>11}" + "".join(f"{name[:9]:>10}" for name in PASSES))
+    for name, precision, threads, _, outcomes in cases:
+        rate = statistics.median(o["this_attempt"]["particle_steps_per_second"] for o in outcomes)
+        last = outcomes[-1]
+        bytes_each = last["this_attempt"]["engine_bytes"] / last["particles"]
+        share = {p["name"]: p["share"] for p in last["this_attempt"]["passes"]}
+        print(f"{name:<22}{last['particles']:>10} {precision:<7}{threads:>7} "
+              f"{last['simd_target']:<6}{rate * 1e-6:>7.2f}{bytes_each:>11.0f}"
+              + "".join(f"{100 * share.get(p, 0):>8.1f} %" for p in PASSES), flush=True)
+
+
+if __name__ == "__main__":
+    main()
