@@ -9,7 +9,8 @@
 #             service; ctest --preset release -L storm)
 #   format    clang-format finds nothing to change
 #   asan      the engine's tests under the address and undefined-behaviour sanitizers
-#   tsan      the tests with "Thread" in their names under the thread sanitizer; by name only
+#   tsan      the service's tests and those with "Thread" in their names under the thread
+#             sanitizer; by name only, for the time of its build
 #   tidy      clang-tidy finds nothing in engine/ and cli/; by name only, for its time
 #
 # Builds are kept in build/release, build/asan and build/tsan, so that a second run is quick.
@@ -22,7 +23,7 @@ steps=("$@")
 for step in "${steps[@]}"; do
   case "$step" in
     release | format | tidy | asan | tsan) ;;
-    -h | --help) sed -n '2,16s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "run.sh: unknown step '$step'; try --help" >&2; exit 2 ;;
   esac
 done
@@ -110,7 +111,11 @@ step_asan() {
 }
 
 step_tsan() {
-  if build tsan test_sph test_service; then check tsan -R '[Tt]hread'; else fail "tsan: build"; fi
+  if build tsan test_sph test_service; then
+    check tsan -R '^service\.[A-Z]|[Tt]hread'
+  else
+    fail "tsan: build"
+  fi
 }
 
 deploy/install-dependencies.sh --tests || exit 1
