@@ -19,13 +19,17 @@ namespace sluice {
 namespace {
 
 // Verbs in the order of the help.
-constexpr std::array kVerbs{&add_run,     &add_validate, &add_plan,   &add_inspect,
-                            &add_sensors, &add_export,   &add_report, &add_serve};
+constexpr std::array kVerbs{&add_run,    &add_validate,  &add_plan,  &add_inspect, &add_sensors,
+                            &add_export, &add_report,    &add_serve, &add_submit,  &add_list,
+                            &add_show,   &add_watch,     &add_pause, &add_resume,  &add_cancel,
+                            &add_delete, &add_checkpoint};
 
-int fail(ExitCode code, std::string_view message) {
+int fail(int code, std::string_view message) {
   if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);
-  return static_cast<int>(code);
+  return code;
 }
+
+int fail(ExitCode code, std::string_view message) { return fail(static_cast<int>(code), message); }
 
 /// The message for a first word that is no verb; empty when there is nothing to object to.
 std::string unknown_verb(const CLI::App& app, std::string_view word) {
@@ -72,7 +76,11 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Sluice runs long dam-break simulations as jobs that can be stopped and resumed anywhere.\n"
       "Exit codes: 0 done, 2 usage, 3 invalid scene, 4 numerical failure, 5 storage failure,\n"
-      "6 no usable checkpoint, 7 folder locked, 85 checkpointed: run the folder again.",
+      "6 no usable checkpoint, 7 folder locked, 85 checkpointed: run the folder again. Of a "
+      "service:\n"
+      "8 not found, 9 the job's state does not allow it, 10 unreachable, 11 job cancelled, 12 "
+      "refused,\n"
+      "13 the service cannot do it now.",
       "sluice"};
   app.set_version_flag("--version", "sluice " + sluice::build_id());
   app.require_subcommand(1);

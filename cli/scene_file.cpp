@@ -21,7 +21,21 @@ std::string read_scene_text(const std::filesystem::path& path) {
   }
 }
 
+std::string read_stdin(std::size_t limit) {
+  std::string text(limit, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), stdin));
+  return text;
+}
+
 }  // namespace
+
+std::string read_scene_bytes(const std::filesystem::path& path) {
+  std::string text = path == "-" ? read_stdin(kMaxSceneBytes + 1) : read_scene_text(path);
+  if (text.size() <= kMaxSceneBytes) return text;
+  throw CommandEnd(ExitCode::invalid_scene,
+                   fmt::format("{} is longer than {} KiB, the most that a scene may have",
+                               path == "-" ? "stdin" : path.string(), kMaxSceneBytes >> 10U));
+}
 
 Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where,
                          StabilityCheck stability) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/job_data.hpp"
+#include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/dimensionless.hpp"
 #include "engine/store/filter.hpp"
@@ -14,18 +15,6 @@ namespace sluice {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-enum class FilterKind { none, gaussian };
-enum class Format { csv, json };
-
-struct SensorArguments {
-  std::string folder;
-  std::string name;
-  FilterKind filter = FilterKind::none;
-  std::optional<double> tau;
-  bool dimensionless = false;
-  Format format = Format::csv;
-};
 
 /// A series as it is shown: filtered, scaled.
 struct View {
@@ -143,9 +132,22 @@ void require_sense(const SensorArguments& arguments) {
   }
 }
 
+void require_folder(const SensorArguments& arguments) {
+  if (!std::filesystem::is_directory(arguments.target)) {
+    throw CommandEnd(ExitCode::usage,
+                     fmt::format("there is no folder {}; for a job of a service, add --server URL",
+                                 arguments.target));
+  }
+  if (arguments.from || arguments.to || arguments.max_points) {
+    throw CommandEnd(ExitCode::usage, "--from, --to and --max-points go with --server");
+  }
+}
+
 void show_sensors(const SensorArguments& arguments) {
   require_sense(arguments);
-  const JobData job(arguments.folder);
+  if (arguments.of_service) return show_service_sensors(arguments);
+  require_folder(arguments);
+  const JobData job(arguments.target);
   const std::vector<Series> all = job.series();
   if (arguments.name.empty()) return list_sensors(all, arguments.format);
   const View view = make_view(job, find_series(all, arguments.name), arguments);
@@ -161,9 +163,8 @@ void show_sensors(const SensorArguments& arguments) {
 void add_sensors(CLI::App& app) {
   auto arguments = std::make_shared<SensorArguments>();
   CLI::App* verb = app.add_subcommand("sensors", "Print a job's sensors, or the series of one");
-  verb->add_option("folder", arguments->folder, "The job's folder")
-      ->required()
-      ->check(CLI::ExistingDirectory);
+  verb->add_option("target", arguments->target, "The job's folder; with --server, the job's id")
+      ->required();
   verb->add_option("name", arguments->name, "The sensor; without one, all are listed");
   const std::map<std::string, FilterKind> filters{{"none", FilterKind::none},
                                                   {"gaussian", FilterKind::gaussian}};
@@ -175,7 +176,12 @@ void add_sensors(CLI::App& app) {
   const std::map<std::string, Format> formats{{"csv", Format::csv}, {"json", Format::json}};
   verb->add_option("--format", arguments->format, "csv by default")
       ->transform(CLI::CheckedTransformer(formats).description("{csv,json}"));
-  verb->footer("Example: sluice sensors dambreak-quick P1 --filter gaussian --tau 0.002");
+  verb->add_flag_callback(
+      "--json", [arguments] { arguments->format = Format::json; }, "The same as --format json");
+  add_service_sensor_options(*verb, *arguments);
+  verb->footer(
+      "Example: sluice sensors dambreak-quick P1 --filter gaussian --tau 0.002\n"
+      "         sluice sensors j0r2mt1q8kq0f7a3c1d2e P1 --server http://127.0.0.1:8080");
   verb->callback([arguments] { show_sensors(*arguments); });
 }
 

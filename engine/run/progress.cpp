@@ -46,15 +46,19 @@ std::string duration_text(const std::optional<double>& seconds) {
   return fmt::format("{} d {} h", whole / 86400, whole % 86400 / 3600);
 }
 
-std::string progress_bar(const Progress& progress, std::size_t width) {
+std::string progress_text(const Progress& progress) {
   const std::string speed = progress.rate
                                 ? fmt::format("{:.3g} s/s, {:.1f} M/s", progress.rate->model_time,
                                               progress.rate->particle_steps * 1e-6)
                                 : "speed unknown";
-  const std::string text = fmt::format(
-      " {:5.1f} % t {:.4f}/{:.4g} s, {}, ETA {}, dt {:.2g} s ({})", 100.0 * progress.fraction(),
-      progress.time, progress.end_time, speed, duration_text(progress.remaining()),
-      progress.time_step, to_string(progress.step_limit));
+  return fmt::format("{:5.1f} % t {:.4f}/{:.4g} s, {}, ETA {}, dt {:.2g} s ({})",
+                     100.0 * progress.fraction(), progress.time, progress.end_time, speed,
+                     duration_text(progress.remaining()), progress.time_step,
+                     to_string(progress.step_limit));
+}
+
+std::string progress_bar(const Progress& progress, std::size_t width) {
+  const std::string text = " " + progress_text(progress);
   if (text.size() + 12 > width) return text.substr(0, width);
   const std::size_t cells = std::min<std::size_t>(30, width - text.size() - 2);
   const auto filled = static_cast<std::size_t>(progress.fraction() * static_cast<double>(cells));

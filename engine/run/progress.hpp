@@ -59,7 +59,10 @@ struct Progress {
 /// "45 s", "12 min 05 s", "3 h 20 min", "6 d 4 h"; "unknown" without a value.
 [[nodiscard]] std::string duration_text(const std::optional<double>& seconds);
 
-/// One line of at most `width` characters for a terminal.
+/// " 12.3 % t 0.1722/1.4 s, 0.21 s/s, 14.2 M/s, ETA 5 s, dt 2.1e-05 s (sound)".
+[[nodiscard]] std::string progress_text(const Progress& progress);
+
+/// The same after a bar: one line of at most `width` characters for a terminal.
 [[nodiscard]] std::string progress_bar(const Progress& progress, std::size_t width);
 
 }  // namespace sluice

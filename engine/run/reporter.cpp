@@ -6,6 +6,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -31,13 +32,6 @@ Json with_event(std::string_view name, const Json& fields) {
 void put(std::FILE* out, const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), out);
   std::fflush(out);
-}
-
-std::size_t terminal_width(std::FILE* out) {
-  winsize size{};
-  const bool known = ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  // The last column stays free: some terminals wrap when it is written.
-  return known ? size.ws_col - 1U : 99U;
 }
 
 Json optional_number(const std::optional<double>& value) {
@@ -98,20 +92,35 @@ void JsonReporter::event(std::string_view name, const Json& fields) {
   put(out_, line_of(with_event(name, fields)));
 }
 
-void BarReporter::progress(const Progress& progress) {
-  std::string text = progress_bar(progress, terminal_width(out_));
+std::size_t StatusLine::width() const {
+  winsize size{};
+  const bool known = ioctl(fileno(out_), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  // The last column stays free: some terminals wrap when it is written.
+  return known ? size.ws_col - 1U : 99U;
+}
+
+void StatusLine::draw(std::string text) {
+  text.resize(std::min(text.size(), width()));
   const std::size_t length = text.size();
   if (length < drawn_) text.append(drawn_ - length, ' ');
   drawn_ = length;
   put(out_, fmt::format("\r{}", text));
 }
 
+void StatusLine::clear() {
+  if (drawn_ > 0) put(out_, fmt::format("\r{:{}}\r", "", drawn_));
+  drawn_ = 0;
+}
+
+void BarReporter::progress(const Progress& progress) {
+  bar_.draw(progress_bar(progress, bar_.width()));
+}
+
 void BarReporter::event(std::string_view name, const Json& fields) {
   if (name == "checkpoint") return;
+  bar_.clear();
   const std::string line = describe(name, fields);
-  const std::string clear = drawn_ > 0 ? fmt::format("\r{:{}}\r", "", drawn_) : "";
-  drawn_ = 0;
-  put(out_, fmt::format("{}{}{}", clear, line, line.empty() ? "" : "\n"));
+  if (!line.empty()) put(out_, line + "\n");
 }
 
 LoggingReporter::LoggingReporter(Reporter& next, std::filesystem::path log)

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <string_view>
 
 #include "engine/run/guards.hpp"
@@ -33,16 +34,32 @@ class JsonReporter final : public Reporter {
   std::FILE* out_;
 };
 
+/// The last line of a terminal, which is written over again and again.
+class StatusLine {
+ public:
+  explicit StatusLine(std::FILE* out) : out_(out) {}
+  /// Characters that fit.
+  [[nodiscard]] std::size_t width() const;
+  /// Cut to what fits. Must hold no control characters.
+  void draw(std::string text);
+  /// Makes room for a line that stays.
+  void clear();
+
+ private:
+  std::FILE* out_;
+  std::size_t drawn_ = 0;
+};
+
 /// A bar that redraws itself and a line for each event that a person wants to see.
 class BarReporter final : public Reporter {
  public:
-  explicit BarReporter(std::FILE* out) : out_(out) {}
+  explicit BarReporter(std::FILE* out) : out_(out), bar_(out) {}
   void progress(const Progress& progress) override;
   void event(std::string_view name, const nlohmann::ordered_json& fields) override;
 
  private:
   std::FILE* out_;
-  std::size_t drawn_ = 0;
+  StatusLine bar_;
 };
 
 class SilentReporter final : public Reporter {

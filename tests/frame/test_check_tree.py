@@ -62,7 +62,16 @@ class CheckTree(unittest.TestCase):
     def test_hdf5_in_a_second_pair_of_files_is_found(self):
         for name in ("engine/store/other.cpp", "tests/store/raw.cpp"):
             found = self.found_in({**GOOD, name: "#include <hdf5.h>\n", "tests/README.md": ""})
-            self.assert_one(found, "hdf5.h: included by more than one pair")
+            self.assert_one(found, "hdf5.h: included by more pairs of files than 1")
+
+    def test_httplib_belongs_to_one_pair_of_the_service_and_one_of_the_command_line(self):
+        both = {"service/response.cpp": "#include <httplib.h>\n",
+                "cli/client.cpp": "#include <httplib.h>\n"}
+        self.assertEqual(self.found_in({**GOOD, **both}), [])
+        third = {**GOOD, **both, "engine/store/fetch.cpp": "#include <httplib.h>\n"}
+        self.assert_one(self.found_in(third), "httplib.h: included by more pairs of files than 2")
+        same = {**GOOD, "cli/a.cpp": "#include <httplib.h>\n", "cli/b.cpp": "#include <httplib.h>\n"}
+        self.assert_one(self.found_in(same), "two pairs of files of one folder")
 
     def test_the_method_may_not_use_files_json_or_logging(self):
         for header in ("fstream", "nlohmann/json.hpp", "fmt/format.h"):

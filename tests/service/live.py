@@ -35,14 +35,14 @@ class Answer:
 
 
 class Server:
-    """Starts the program on a free port; leaving the `with` block stops it."""
+    """Starts the program on a free port, or on `port`; leaving the `with` block stops it."""
 
-    def __init__(self, program, *options, data=None):
+    def __init__(self, program, *options, data=None, port=0):
         self.scratch = tempfile.TemporaryDirectory(prefix="sluice-live-")
         self.data = data or os.path.join(self.scratch.name, "data")
         self.log = open(os.path.join(self.scratch.name, "log"), "w+", encoding="utf-8")
         self.process = subprocess.Popen(
-            [program, "serve", "--data", self.data, "--port", "0", *options],
+            [program, "serve", "--data", self.data, "--port", str(port), *options],
             stdout=subprocess.PIPE, stderr=self.log, text=True)
         first = self.process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:(\d+)", first)

@@ -1,0 +1,79 @@
+#include "cli/fetched_job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "cli/json_text.hpp"
+#include "cli/verbs.hpp"
+#include "engine/store/job_folder.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path new_folder() {
+  std::string name = (fs::temp_directory_path() / "sluice-report-XXXXXX").string();
+  if (::mkdtemp(name.data()) != nullptr) return name;
+  throw CommandEnd(ExitCode::storage_failure,
+                   fmt::format("cannot make a folder {}: {}; TMPDIR can name another place", name,
+                               std::strerror(errno)));
+}
+
+void write_file(const fs::path& path, const std::string& bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (file) return;
+  throw CommandEnd(
+      ExitCode::storage_failure,
+      fmt::format("cannot write {}: TMPDIR can name a place with more room", path.string()));
+}
+
+std::vector<std::string> file_names(ServiceClient& service, const std::string& id) {
+  const auto list = service.object_of(service.get(job_target(id, "/files")));
+  std::vector<std::string> names;
+  for (const auto& file : member(list, "files")) names.push_back(text_at(file, "name"));
+  return names;
+}
+
+void fetch(ServiceClient& service, const std::string& id, const fs::path& folder) {
+  const std::vector<std::string> there = file_names(service, id);
+  const JobPaths paths(folder);
+  for (const fs::path& path : {paths.scene(), paths.series(), paths.outcome()}) {
+    const std::string name = path.filename().string();
+    if (std::ranges::find(there, name) != there.end()) {
+      write_file(path, service.get(job_target(id, "/files/" + name)).body);
+    } else if (path == paths.series()) {
+      throw CommandEnd(
+          ClientExit::not_found,
+          fmt::format("job {} has no series yet; a scene without sensors never does", id));
+    }
+  }
+}
+
+}  // namespace
+
+FetchedJob::FetchedJob(ServiceClient& service, const std::string& id) : folder_(new_folder()) {
+  try {
+    fetch(service, id, folder_);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    throw;
+  }
+}
+
+FetchedJob::~FetchedJob() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+}  // namespace sluice

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cli/service_client.hpp"
+
+namespace sluice {
+
+/// What a report needs of a service's job, in a folder of its own as long as this lives: scene,
+/// series and, once an attempt has ended, its outcome.
+class FetchedJob {
+ public:
+  /// Throws CommandEnd(not_found) when there is no such job or it has no series yet.
+  FetchedJob(ServiceClient& service, const std::string& id);
+  ~FetchedJob();
+  FetchedJob(const FetchedJob&) = delete;
+  FetchedJob& operator=(const FetchedJob&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace sluice

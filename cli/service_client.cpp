@@ -1,0 +1,199 @@
+#include "cli/service_client.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include "cli/json_text.hpp"
+#include "cli/problem_text.hpp"
+#include "cli/verbs.hpp"
+#include "engine/run/stopwatch.hpp"
+#include "service/http_guard.hpp"
+#include "service/job_ids.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kServerVariable = "SLUICE_SERVER";
+constexpr const char* kTokenVariable = "SLUICE_TOKEN_FILE";
+constexpr double kFirstPause = 0.25;  // s
+constexpr double kLongestPause = 5.0;
+
+ServerAddress address_of(const ServiceOptions& options) {
+  try {
+    return parse_address(options.server);
+  } catch (const std::invalid_argument& error) {
+    throw CommandEnd(ExitCode::usage, error.what());
+  }
+}
+
+std::string token_of(const ServiceOptions& options) {
+  if (options.token_file.empty()) return {};
+  try {
+    return read_token_file(options.token_file);
+  } catch (const std::runtime_error& error) {
+    throw CommandEnd(ExitCode::usage, error.what());
+  }
+}
+
+/// What the environment says, else `otherwise`.
+std::string standing(const char* variable, const char* otherwise) {
+  const char* const value = std::getenv(variable);
+  return value != nullptr && *value != '\0' ? value : otherwise;
+}
+
+/// One text for one server.
+std::string without_slash(std::string address) {
+  if (address.ends_with('/')) address.pop_back();
+  return address;
+}
+
+std::string shell_word(const std::string& text) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  const bool needs_none = !text.empty() && std::ranges::all_of(text, [&](char c) {
+    return plain(c) || std::string_view("-._/:[]").find(c) != std::string_view::npos;
+  });
+  if (needs_none) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+/// Why an answer only says that there is no service at the moment; empty for any other.
+std::string absence(const HttpReply& reply) {
+  const bool absent = reply.status == 502 || reply.status == 504 ||
+                      (reply.status == 503 && problem_slug(reply) != "queue-full");
+  return absent ? fmt::format("the answer is {}", reply.status) : "";
+}
+
+void add_token_option(CLI::App& verb, ServiceOptions& options) {
+  verb.add_option("--token-file", options.token_file, "File (mode 600) with the service's token")
+      ->envname(kTokenVariable);
+}
+
+}  // namespace
+
+void add_service_options(CLI::App& verb, ServiceOptions& options) {
+  verb.add_option("--server", options.server, "Address of the service")
+      ->envname(kServerVariable)
+      ->capture_default_str();
+  add_token_option(verb, options);
+}
+
+void add_service_switch(CLI::App& verb, ServiceOptions& options, bool& of_service) {
+  verb.add_option_function<std::string>(
+      "--server",
+      [&options, &of_service](const std::string& server) {
+        options.server = server;
+        of_service = true;
+      },
+      "Address of the service whose job this is");
+  add_token_option(verb, options);
+}
+
+ServiceClient::ServiceClient(const ServiceOptions& options)
+    : options_(options), http_(address_of(options), token_of(options)) {
+  options_.server = without_slash(options_.server);
+}
+
+void ServiceClient::end_unreachable(const std::string& why, const std::string& advice) const {
+  throw CommandEnd(ClientExit::unreachable,
+                   fmt::format("cannot reach {}: {}; {}", options_.server, why, advice));
+}
+
+HttpReply ServiceClient::accept(HttpReply reply, const std::string& subject) const {
+  const bool good = (reply.status >= 200 && reply.status < 300) || reply.status == 304;
+  if (!good) end_with_problem(reply, {options_.server, subject, !options_.token_file.empty()});
+  return reply;
+}
+
+HttpReply ServiceClient::ask(const HttpRequest& request, const std::string& subject) {
+  try {
+    return accept(http_.ask(request), subject);
+  } catch (const NoReply& none) {
+    end_unreachable(none.what(),
+                    "start one with sluice serve --data DIR, or name its address with --server");
+  }
+}
+
+HttpReply ServiceClient::get(const std::string& target) {
+  HttpRequest request;
+  request.target = target;
+  return ask(request);
+}
+
+HttpReply ServiceClient::ask_patiently(const HttpRequest& request, const Patience& patience,
+                                       const std::string& subject) {
+  const Stopwatch clock;
+  double pause = kFirstPause;
+  for (bool told = false;; told = true) {
+    std::string why;
+    try {
+      HttpReply reply = http_.ask(request);
+      why = absence(reply);
+      if (why.empty()) {
+        if (told) patience.say(fmt::format("{} answers again", options_.server));
+        return accept(std::move(reply), subject);
+      }
+    } catch (const NoReply& none) {
+      why = none.what();
+      const bool lasting =
+          none.fault() == NoReply::Fault::untrusted || none.fault() == NoReply::Fault::too_large;
+      if (lasting) end_unreachable(why, patience.last_words);
+    }
+    const double left = patience.seconds - clock.seconds();
+    if (left <= 0.0) end_unreachable(why, patience.last_words);
+    if (!told) {
+      patience.say(fmt::format("cannot reach {}: {}; trying again for {:.0f} s", options_.server,
+                               why, patience.seconds));
+    }
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(pause, left)));
+    pause = std::min(2.0 * pause, kLongestPause);
+  }
+}
+
+Json ServiceClient::object_of(const HttpReply& reply) const {
+  Json value = Json::parse(reply.body, nullptr, /*allow_exceptions=*/false);
+  if (value.is_object()) return value;
+  throw CommandEnd(
+      ClientExit::unreachable,
+      fmt::format("{} answers, but not as a Sluice service does: see --server", options_.server));
+}
+
+std::string ServiceClient::token_words() const {
+  const std::string path = options_.token_file.string();
+  if (path == standing(kTokenVariable, "")) return {};
+  return " --token-file " + shell_word(path);
+}
+
+std::string ServiceClient::command(std::string_view words) const {
+  if (options_.server != without_slash(standing(kServerVariable, kDefaultServer))) {
+    return command_with_server(words);
+  }
+  return fmt::format("sluice {}{}", words, token_words());
+}
+
+std::string ServiceClient::command_with_server(std::string_view words) const {
+  return fmt::format("sluice {} --server {}{}", words, options_.server, token_words());
+}
+
+std::string job_target(const std::string& id, std::string_view rest) {
+  if (is_job_id(id)) return fmt::format("/v1/jobs/{}{}", id, rest);
+  throw CommandEnd(ClientExit::not_found,
+                   fmt::format("\"{}\" is no job's id, which is the letter j and 20 characters of "
+                               "0-9 and a-v: see sluice list",
+                               printable(id)));
+}
+
+void print_body(const HttpReply& reply) {
+  std::fwrite(reply.body.data(), 1, reply.body.size(), stdout);
+  if (!reply.body.ends_with('\n')) std::fputc('\n', stdout);
+}
+
+}  // namespace sluice
