@@ -54,7 +54,7 @@ class EventStream {
       last_ = event.number;
     }
     if (job && job->progress != job_.progress) {
-      const auto progress = job_summary(*job)["progress"];
+      const auto progress = job_summary(*job, "")["progress"];
       chunk += fmt::format("event: progress\ndata: {}\n\n", text_of(progress));
     }
     over_ = !job || (is_ended(job->state) && events.size() < kBatch);

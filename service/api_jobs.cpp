@@ -77,7 +77,9 @@ Response list_jobs(ApiContext& context, const RouteRequest& request) {
   const bool more = jobs.size() == filter.limit;
   if (more) jobs.pop_back();
   Json list = Json::array();
-  for (const Job& job : jobs) list.push_back(job_summary(job));
+  for (const Job& job : jobs) {
+    list.push_back(job_summary(job, context.scheduler.why_waiting(job)));
+  }
   return json_response(200, {{"jobs", std::move(list)},
                              {"next_cursor", more ? Json(jobs.back().id) : Json(nullptr)}});
 }

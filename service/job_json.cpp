@@ -43,7 +43,7 @@ Json stored_json(const std::string& text) {
   return value.is_discarded() ? Json(nullptr) : value;
 }
 
-Json job_summary(const Job& job) {
+Json job_summary(const Job& job, const std::string& waiting) {
   const bool stopping = job.pending_stop != PendingStop::none;
   return Json{{"id", job.id},
               {"state", to_string(job.state)},
@@ -60,12 +60,12 @@ Json job_summary(const Job& job) {
               {"attempts", job.attempts},
               {"crashes", job.crashes},
               {"end_time", job.end_time},
-              {"progress", progress_json(job)}};
+              {"progress", progress_json(job)},
+              {"waiting", text_or_null(waiting)}};
 }
 
 Json job_document(const Job& job, const std::string& waiting) {
-  Json document = job_summary(job);
-  document["waiting"] = text_or_null(waiting);
+  Json document = job_summary(job, waiting);
   document["scene_hash"] = job.scene_hash;
   document["estimate"] = stored_json(job.estimate);
   document["outcome"] = stored_json(job.outcome);

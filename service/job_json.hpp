@@ -9,11 +9,11 @@
 
 namespace sluice {
 
-/// A job as GET /v1/jobs lists it: scheduling and progress. Times are RFC 3339 in UTC.
-[[nodiscard]] nlohmann::ordered_json job_summary(const Job& job);
+/// A job as GET /v1/jobs lists it: scheduling, progress and why it waits (`waiting`, null when
+/// empty). Times are RFC 3339 in UTC.
+[[nodiscard]] nlohmann::ordered_json job_summary(const Job& job, const std::string& waiting);
 
-/// A job as GET /v1/jobs/{id} shows it: the summary, why it waits (`waiting`, null when empty),
-/// estimate, outcome and links.
+/// A job as GET /v1/jobs/{id} shows it: the summary, estimate, outcome and links.
 [[nodiscard]] nlohmann::ordered_json job_document(const Job& job, const std::string& waiting);
 
 /// An event's number, job, time, name and detail.
