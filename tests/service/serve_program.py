@@ -17,11 +17,11 @@ from live import Server, scene
 PROGRAM = ""
 
 
-def refused(*options, data=None):
+def refused(*options, data=None, port=0):
     """Runs a `serve` that is expected to refuse; returns its exit code and what it said."""
     with tempfile.TemporaryDirectory() as folder:
         result = subprocess.run(
-            [PROGRAM, "serve", "--data", data or os.path.join(folder, "data"), "--port", "0",
+            [PROGRAM, "serve", "--data", data or os.path.join(folder, "data"), "--port", str(port),
              *options], capture_output=True, text=True, timeout=300, check=False)
     return result.returncode, result.stderr
 
@@ -100,7 +100,7 @@ class Serve(unittest.TestCase):
 
     def test_a_port_has_one_server(self):
         with Server(PROGRAM) as server:
-            code, said = refused("--port", str(server.port))
+            code, said = refused(port=server.port)
             self.assertEqual(code, 2)
             self.assertIn("--port", said)
 
