@@ -28,8 +28,9 @@ NOT_FOUND, WRONG_STATE, UNREACHABLE, JOB_CANCELLED, REFUSED, SERVICE_FAILED = 8,
 JOB_PAUSED = 85
 
 ENDLESS = scene(1e4, spacing=0.01, interval=1.0)  # still running however fast the machine is
-UNSTABLE = scene(5.0, spacing=0.02,
-                 numerics={"integrator": "modified_leap_frog", "courant": 1.9})
+# A column thrown against the wall at nearly the speed of sound: no scheme holds that.
+FAILING = scene(5.0, spacing=0.02, fluid=[{"shape": "rectangle", "corner": [0, 0],
+                                           "size": [0.6, 0.3], "velocity": [23.0, 0.0]}])
 NO_SUCH_JOB = "j" + 20 * "0"
 
 
@@ -314,7 +315,7 @@ class Watching(Case):
     def test_the_exit_code_says_how_the_job_ended(self):
         server = self.serve()
         at = ("--server", server.url)
-        failed = self.expect(JOB_FAILED, "submit", self.write(UNSTABLE), "--watch", *at)
+        failed = self.expect(JOB_FAILED, "submit", self.write(FAILING), "--watch", *at)
         self.assertRegex(failed.stdout, "\nfailed: .*step")
         job = server.submit(ENDLESS)
         watch = self.start("watch", job, *at)
