@@ -233,7 +233,7 @@ def walk_ended_job(walk, server, done):
     for body in ({"end_time": 1e12}, {"end_time": "x"}):
         walk.ask(server, "POST", job + "/resume", body)
     walk.ask(server, "POST", job + "/cancel")
-    walk.ask(server, "POST", job + "/resume", {"end_time": 16.5})
+    walk.ask(server, "POST", job + "/resume", {"end_time": 12.5})
 
 
 def walk_stop(walk, server, running):
@@ -285,7 +285,7 @@ def main():
         with open(os.open(token, os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as out:
             out.write(32 * "t")
         assert server.ask("GET", "/openapi.json").json() == document
-        done = server.submit(scene(16.0, interval=0, scales={"height": 0.3, "width": 0.6}))
+        done = server.submit(scene(12.0, interval=0, scales={"height": 0.3, "width": 0.6}))
         with Server(program, "--token-file", token) as guarded:
             walk_every_operation(walk, server, guarded, done)
         refuse_unknown(server, walk.failures)
