@@ -21,6 +21,10 @@ copy=${2%/}
 command -v sqlite3 >/dev/null || die "needs sqlite3: apt-get install sqlite3"
 
 umask 077
+exec 9<"$data/jobs"
+flock --nonblock 9 || die "another backup of $data is being made"
+# What a killed backup left.
+rm -rf "$data"/.backup-*
 part=$copy.part
 mkdir "$part" || die "cannot make $part; remove what a broken backup left, or choose another name"
 # On the disk of the data, for links.

@@ -25,6 +25,7 @@ for argument in "$@"; do
 done
 [[ -r $scene ]] || { echo "quickstart.sh: cannot read the scene $scene" >&2; exit 2; }
 
+export no_proxy=127.0.0.1
 sluice=build/release/cli/sluice
 work=$(mktemp -d)
 service=

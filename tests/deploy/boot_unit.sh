@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The unit under a real systemd: installs into a throw-away layer over this system, boots that with
-# systemd-nspawn without a network, and restarts and kills the service while a job runs. Needs root,
-# systemd-container and overlayfs; skipped (77) without them.
+# systemd-nspawn without a network, and restarts, kills, backs up and restores the service while a job
+# runs. Needs root, systemd-container, sqlite3 and overlayfs; skipped (77) without them.
 #
 #   tests/deploy/boot_unit.sh SLUICE ROOT
 set -euo pipefail
@@ -10,6 +10,7 @@ skip() { echo "skipped: $1"; exit 77; }
 
 ((EUID == 0)) || skip "needs root"
 command -v systemd-nspawn >/dev/null || skip "there is no systemd-nspawn here (package systemd-container)"
+command -v sqlite3 >/dev/null || skip "there is no sqlite3 here"
 if [[ ${SLUICE_BOOT_INNER:-} != yes ]]; then
   unshare --mount true 2>/dev/null || skip "namespaces are not allowed here"
   SLUICE_BOOT_INNER=yes exec unshare --mount "$0" "$@"
@@ -47,6 +48,7 @@ rm -f "$work/system/etc/default/sluice"
 install -d -m 700 "$work/system/etc/sluice"
 (umask 077 && echo 0123456789abcdef0123456789abcdef >"$work/system/etc/sluice/token")
 cp "$root/schemas/examples/dambreak-quick.json" "$work/out/scene.json"
+cp "$root"/deploy/{backup,restore}.sh "$work/out/"
 rm -f "$work/system/etc/machine-id"
 echo 0123456789abcdef0123456789abcdef >"$work/system/etc/machine-id"
 
@@ -85,6 +87,14 @@ kill -9 "$before"
 until_it_holds log_has resumed 2
 [[ $(main_pid) != "$before" ]]
 echo "a killed service comes back, and the job goes on"
+
+/out/backup.sh /var/lib/private/sluice /out/copy
+systemctl stop sluice
+mv /var/lib/private/sluice /var/lib/private/sluice.old
+/out/restore.sh /out/copy /var/lib/private/sluice
+systemctl start sluice
+until_it_holds log_has resumed 3
+echo "a copy made meanwhile is restored, and the job goes on"
 
 systemctl stop sluice
 [[ $(systemctl show -p Result --value sluice) == success ]]
