@@ -128,7 +128,12 @@ Scene resolve(const Document& document) {
   method.sound_speed = document.sound_speed ? *document.sound_speed : default_sound_speed(scene);
   method.domain = document.domain ? *document.domain : default_domain(scene);
   // Nothing passes over a lid: what leaves a closed tank has leaked, wherever.
-  if (scene.tank && scene.tank->open_top) method.wall_top = scene.tank->height;
+  if (scene.tank && scene.tank->open_top) {
+    method.wall_top = scene.tank->height;
+    // The middle of the walls, which are three particles thick.
+    method.rim_left = -1.5 * method.spacing;
+    method.rim_right = scene.tank->width + 1.5 * method.spacing;
+  }
   for (Sensor& sensor : scene.sensors) {
     const bool wants_length = sensor.kind == SensorKind::pressure;
     if (wants_length && sensor.smoothing_length == 0.0) {

@@ -333,7 +333,7 @@ void Engine<T>::sort() {
   use.reserve(particle_count);
   for (std::uint32_t s = 0; s < layout.slots(); ++s) {
     if (particles.id[s] < 0.0) continue;
-    (method.domain.contains(particles.position(s)) ? use : gone).push_back(s);
+    (method.keeps(particles.position(s)) ? use : gone).push_back(s);
   }
   retire(gone);
   reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id, use));
@@ -604,7 +604,7 @@ void Engine<T>::note_motion() {
 template <typename T>
 void Engine<T>::measure(double ahead) {
   motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    sweeps_.updates.measure(p, method.domain, ahead, seen);
+    sweeps_.updates.measure(p, method, ahead, seen);
   });
   note_motion();
 }
@@ -652,7 +652,7 @@ void Engine<T>::step_leap_frog() {
   choose_time_step();
   motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
     sweeps_.updates.leap_frog(p, r, 0.5 * (last + time_step), time_step);
-    sweeps_.updates.measure(p, method.domain, 0.0, seen);
+    sweeps_.updates.measure(p, method, 0.0, seen);
     sweeps_.updates.write_pairs(p, scales(), pairs_);
   });
   note_motion();
@@ -669,7 +669,7 @@ void Engine<T>::step_kick_drift_kick() {
     const PassClock clock(pass_seconds, Pass::update);
     motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
       sweeps_.updates.kick_drift(p, time_step);
-      sweeps_.updates.measure(p, method.domain, 0.5 * time_step, seen);
+      sweeps_.updates.measure(p, method, 0.5 * time_step, seen);
       sweeps_.updates.write_pairs(p, scales(), pairs_);
     });
   }
@@ -704,7 +704,7 @@ void Engine<T>::step_kick_drift_kick() {
   motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
     gather(p, std::array{kXSum, kYSum});
     sweeps_.updates.kick(p, r, time_step);
-    sweeps_.updates.measure(p, method.domain, 0.0, seen);
+    sweeps_.updates.measure(p, method, 0.0, seen);
   });
   note_motion();
   extremes.finite = extremes.finite && finite;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -78,7 +79,16 @@ struct Method {
   Box domain;                      ///< a particle that leaves it is retired
   std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
                                    ///< no open tank
+  /// m; above wall_top and outside of these x a particle is over the wall and retired at once, so
+  /// that what falls down behind a wall is not taken for a leak.
+  double rim_left = -std::numeric_limits<double>::infinity();
+  double rim_right = std::numeric_limits<double>::infinity();
 
+  /// Whether a particle there stays in the run.
+  [[nodiscard]] bool keeps(const Vec& p) const {
+    const bool over = wall_top && p.y() >= *wall_top && !(p.x() >= rim_left && p.x() <= rim_right);
+    return domain.contains(p) && !over;
+  }
   /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
   [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }
   /// Distance at which W becomes zero, in smoothing lengths.

@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <limits>
 #include <type_traits>
 
 #include "engine/sph/updates.hpp"
@@ -136,7 +137,7 @@ void reinitialise_density(const ParticleSpan& p, const T* excess, double referen
   }
 }
 
-inline void measure(const ParticleSpan& p, const Box& domain, double ahead, Motion& out) {
+inline void measure(const ParticleSpan& p, const Method& method, double ahead, Motion& out) {
   using D = hn::ScalableTag<double>;
   const D d;
   using V = hn::Vec<D>;
@@ -149,6 +150,11 @@ inline void measure(const ParticleSpan& p, const Box& domain, double ahead, Moti
   auto outside = hn::FirstN(d, 0);
   auto broken = hn::FirstN(d, 0);
   const V lead = hn::Set(d, ahead);
+  // As Method::keeps.
+  const Box& domain = method.domain;
+  const V top = hn::Set(d, method.wall_top.value_or(std::numeric_limits<double>::infinity()));
+  const V rim_left = hn::Set(d, method.rim_left);
+  const V rim_right = hn::Set(d, method.rim_right);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const V reach = at(p.reach, s);
     const auto used = reach < hn::Set(d, kNoReach);
@@ -166,7 +172,9 @@ inline void measure(const ParticleSpan& p, const Box& domain, double ahead, Moti
     const auto inside =
         hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
                 hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
-    outside = hn::Or(outside, hn::AndNot(inside, used));
+    const auto beside = hn::Or(x<rim_left, x> rim_right);
+    const auto kept = hn::AndNot(hn::And(y >= top, beside), inside);
+    outside = hn::Or(outside, hn::AndNot(kept, used));
     // False for a NaN as well.
     const auto sound =
         hn::Abs(x) + hn::Abs(y) + hn::Abs(vx) + hn::Abs(vy) + hn::Abs(rho) < hn::Set(d, 1e300);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "engine/sph/method.hpp"
 #include "engine/sph/pair_arrays.hpp"
 #include "engine/sph/vec.hpp"
 
@@ -49,7 +50,7 @@ struct Motion {
   double min_density_excess = 1e300;
   double max_density_excess = -1e300;
   bool moved = false;  ///< a particle is, or will be, farther from its sorted place than its reach
-  bool outside = false;  ///< a particle left the domain
+  bool outside = false;  ///< a particle is to be retired
   bool finite = true;
 
   void merge(const Motion& other) {
@@ -92,7 +93,7 @@ struct Updates {
   /// New excess (in units of rho_0) into both time levels, by the same increment (eq. 10).
   void (*reinitialise)(const ParticleSpan&, const T* excess, double reference_density) = nullptr;
   /// Speeds, densities and displacements; positions are looked at `ahead` seconds later.
-  void (*measure)(const ParticleSpan&, const Box& domain, double ahead, Motion&) = nullptr;
+  void (*measure)(const ParticleSpan&, const Method&, double ahead, Motion&) = nullptr;
   /// Largest acceleration of the rates.
   void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
 };

@@ -99,6 +99,29 @@ TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
   }
 }
 
+TEST(Leaving, OverTheRimIsOvertoppingBeforeItFallsBehindTheWall) {
+  for (const Integrator integrator : kIntegrators) {
+    Method m = method_of(integrator);
+    m.gravity = {0.0, -9.81};
+    m.wall_top = 0.0;
+    m.rim_left = -1.0;
+    m.rim_right = 1.0;
+    Fluid fluid;
+    fluid.add({0.0, 0.5});                // falls back into the tank
+    fluid.add({0.7, 0.2}, {3.0, 0.0});    // passes the right rim 0.15 above it
+    fluid.add({-0.7, 0.2}, {-3.0, 0.0});  // and the left one
+    fluid.add({1.2, -0.5}, {4.0, 0.0});   // has been behind the wall from the start
+    Solver solver(m, start_from(fluid), {}, {});
+    while (solver.time() < 0.4) solver.step();
+    ASSERT_EQ(solver.retired().size(), 3U);
+    for (const Retired& r : solver.retired()) {
+      const bool over = r.id == 1.0 || r.id == 2.0;
+      EXPECT_EQ(r.cause, over ? RetireCause::overtopped : RetireCause::leaked) << r.id;
+      EXPECT_EQ(m.domain.contains({r.x, r.y}), over) << r.id;
+    }
+  }
+}
+
 TEST(Leaving, WithoutATankIsALeakEverywhere) {
   Method m = method_of(Integrator::kick_drift_kick);
   Fluid fluid;
