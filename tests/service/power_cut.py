@@ -274,9 +274,10 @@ class Storm:
         """Lets all jobs end and compares them with the undisturbed runs."""
         self.disk.mount()
         self.service.start()
-        while self.service.unfinished() != 0:
+        jobs = [witness.job for witness in self.witnesses]
+        while self.service.unfinished(jobs) != 0:
             if time.monotonic() > self.end:
-                raise RuntimeError(f"{self.service.unfinished()} jobs have not ended in time")
+                raise RuntimeError(f"{self.service.unfinished(jobs)} jobs have not ended in time")
             time.sleep(0.2)
         for witness in self.witnesses:
             witness.join(HANG)

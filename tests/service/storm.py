@@ -127,12 +127,13 @@ class Service:
                               {"Idempotency-Key": f"storm-{number}"})
         return answer and answer["id"]
 
-    def unfinished(self):
-        """How many acknowledged jobs have not ended; None when nobody answers."""
-        count = 0
+    def unfinished(self, acknowledged):
+        """How many of these jobs have not ended; None when nobody answers. A submission that was cut
+        short after its folder and before its answer leaves a paused job, which is none of them."""
+        jobs = set()
         for state in ("queued", "running", "paused"):
             answer = self.request("GET", f"/v1/jobs?state={state}&limit=1000")
             if answer is None:
                 return None
-            count += len(answer["jobs"])
-        return count
+            jobs.update(job["id"] for job in answer["jobs"])
+        return len(jobs & set(acknowledged))
