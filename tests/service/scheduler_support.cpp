@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::chrono::minutes kHang{10};
-constexpr double kEndless = 1e5;  // s of model time; a second of work for ten
+constexpr double kEndlessTime = 1e5;  // s of model time; a second of work for ten
 
 Job add_job_with_scene(JobStore& store, const DataFolder& data, const std::string& scene, Job job) {
   job.id = store.new_id();
@@ -48,7 +48,7 @@ std::string endless_scene() {
                  "density_diffusion": {"kind": "fourtakas", "delta": 0.1},
                  "artificial_viscosity": {"alpha": 0.1}}
   })");
-  scene["end_time"] = kEndless;
+  scene["end_time"] = kEndlessTime;
   return scene.dump();
 }
 
@@ -77,7 +77,7 @@ Job add_slow_job(JobStore& store, const DataFolder& data) {
 
 Job add_endless_job(JobStore& store, const DataFolder& data) {
   Job job = a_job();
-  job.end_time = kEndless;
+  job.end_time = kEndlessTime;
   return add_job_with_scene(store, data, endless_scene(), job);
 }
 

@@ -11,12 +11,12 @@
 namespace sluice {
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kGravity = 9.81;
 
 Method falling(Integrator integrator) {
   Method m = plain_method();
   m.integrator = integrator;
-  m.gravity = {0.0, -kG};
+  m.gravity = {0.0, -kGravity};
   m.domain = {{-50.0, -500.0}, {50.0, 50.0}};
   return m;
 }
@@ -45,9 +45,9 @@ TEST(FreeFall, OfAnIsolatedParticleIsExactWithStepsOfAnyLength) {
       // Relative to the path of some 12 m and the speed of some 12 m/s.
       EXPECT_GT(t, 1.3);
       EXPECT_NEAR(fluid.x[0].x(), 0.3 + 2.0 * t, 1e-11);
-      EXPECT_NEAR(fluid.x[0].y(), 1.0 + 5.0 * t - 0.5 * kG * t * t, 1e-11);
+      EXPECT_NEAR(fluid.x[0].y(), 1.0 + 5.0 * t - 0.5 * kGravity * t * t, 1e-11);
       EXPECT_NEAR(fluid.v[0].x(), 2.0, 1e-12);
-      EXPECT_NEAR(fluid.v[0].y(), 5.0 - kG * t, 1e-11);
+      EXPECT_NEAR(fluid.v[0].y(), 5.0 - kGravity * t, 1e-11);
       EXPECT_EQ(fluid.excess[0], 0.0);
       EXPECT_GT(longest / shortest, 1.2) << "steps do not vary: this test proves less";
     }
@@ -62,9 +62,9 @@ TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSt
   for (int n = 0; n < 50; ++n) {
     solver.step();
     const double dt = solver.time_step();
-    v_half += 0.5 * (last + dt) * -kG;
+    v_half += 0.5 * (last + dt) * -kGravity;
     y += dt * v_half;
-    const double v = v_half + 0.5 * dt * -kG;
+    const double v = v_half + 0.5 * dt * -kGravity;
     last = dt;
     const SolverState state = solver.state();
     ASSERT_NEAR(state.particles.vy_half[0], v_half, 1e-13) << "step " << n;
@@ -75,15 +75,15 @@ TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSt
 
 TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
   Solver solver(falling(Integrator::kick_drift_kick), start_from(lone_particle()), {}, {});
-  EXPECT_EQ(solver.state().particles.ay[0], -kG) << "the first kick needs the acceleration";
+  EXPECT_EQ(solver.state().particles.ay[0], -kGravity) << "the first kick needs the acceleration";
   double y = 1.0;
   double v = 5.0;
   for (int n = 0; n < 50; ++n) {
     solver.step();
     const double dt = solver.time_step();
-    v -= 0.5 * dt * kG;
+    v -= 0.5 * dt * kGravity;
     y += dt * v;
-    v -= 0.5 * dt * kG;
+    v -= 0.5 * dt * kGravity;
     const SolverState state = solver.state();
     ASSERT_NEAR(state.particles.y[0], y, 1e-13) << "step " << n;
     ASSERT_NEAR(state.particles.vy[0], v, 1e-13) << "step " << n;

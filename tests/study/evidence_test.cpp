@@ -9,7 +9,7 @@
 namespace sluice {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// A dam break half the experiment's size on a light planet with a light fluid: only the
 /// dimensionless shape is the same.
@@ -97,7 +97,7 @@ Evidence compare_with_delay(double delay, double factor) {
   static const Reference reference = made_up_reference();
   const auto late = [&](double t) {
     const double value = factor * impact(t - delay);
-    return value == 0.0 ? kNan : value;
+    return value == 0.0 ? kNoValue : value;
   };
   return compare(scene, {series_of(scene, "low", "pressure", unit_of_pressure(scene), late)},
                  reference, 2e-3 * unit_of_time(scene));
@@ -188,7 +188,7 @@ TEST(PressureCurve, CountsDrySamplesAsZeroSoThatTheFilterDoesNotBringTheArrivalF
   const Scene scene = half_size_scene();
   const double tau = 0.05 * unit_of_time(scene);
   const Series step = series_of(scene, "low", "pressure", unit_of_pressure(scene),
-                                [](double t) { return t < 3.0 ? kNan : 1.0; });
+                                [](double t) { return t < 3.0 ? kNoValue : 1.0; });
   const auto arrival = first_passage(pressure_curve(step, scene, tau), 0.05, 0.0);
   EXPECT_NEAR(*arrival, 3.0 - 1.1631 * 0.05, 1e-3);
 }

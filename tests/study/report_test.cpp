@@ -10,7 +10,7 @@
 namespace sluice {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 Series probe() {
   Series series;
@@ -19,7 +19,7 @@ Series probe() {
   series.columns = {{"value", "m"}};
   series.time = {0.0, 1.0, 2.0, 3.0};
   series.duration = {0.0, 1.0, 1.0, 1.0};
-  series.values = {kNan, 0.5, 2.0, 1.0};
+  series.values = {kMissing, 0.5, 2.0, 1.0};
   series.weight = {0.0, 1.0, 1.0, 1.0};
   return series;
 }
@@ -43,7 +43,7 @@ TEST(Report, SummarisesASensorByItsFirstWetItsHighestAndItsLastSample) {
 
 TEST(Report, OfASensorThatStayedDryHasNoValuesRatherThanZeros) {
   Series dry = probe();
-  dry.values.assign(4, kNan);
+  dry.values.assign(4, kMissing);
   const Report report = make_report(scene_of_no_experiment(), {dry}, nullptr);
   EXPECT_FALSE(report.sensors[0].first_wet);
   EXPECT_TRUE(report_json(report).at("sensors").at(0).at("highest").is_null());
