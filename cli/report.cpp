@@ -16,27 +16,52 @@
 namespace sluice {
 namespace {
 
+enum class ReportFormat { text, json, markdown, html };
+
 struct ReportArguments {
   std::string target;  ///< a job's folder, or its id at a service
   bool of_service = false;
   ServiceOptions service;
   std::filesystem::path output;
   double tau = kComparisonTau;
+  ReportFormat format = ReportFormat::text;
   bool json = false;
 };
 
-void write_files(const std::filesystem::path& folder, const std::string& text,
-                 const std::string& json) {
-  std::filesystem::create_directories(folder);
-  publish_text(folder / "report.txt", text);
-  publish_text(folder / "report.json", json);
+std::string formatted(const std::filesystem::path& folder, double tau, ReportFormat format) {
+  const JobRecord job = read_job(folder);
+  const Report report = make_report(job.scene, job.series, job.outcome, tau);
+  switch (format) {
+    case ReportFormat::json:
+      return report_json(report).dump(2) + "\n";
+    case ReportFormat::markdown:
+      return report_markdown(report);
+    case ReportFormat::html:
+      return report_html(report, job.series, picture_frames(folder, job.scene));
+    case ReportFormat::text:
+      break;
+  }
+  return report_text(report);
 }
 
-Report report_of(const ReportArguments& arguments) {
-  if (!arguments.of_service) return report_of_folder(arguments.target, arguments.tau);
-  ServiceClient service(arguments.service);
-  const FetchedJob job(service, arguments.target);
-  return report_of_folder(job.folder(), arguments.tau);
+void write_files(const ReportArguments& arguments, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(arguments.output, error);
+  if (error) {
+    throw CommandEnd(ExitCode::storage_failure,
+                     fmt::format("cannot make {}: {}; name another folder with --output",
+                                 arguments.output.string(), error.message()));
+  }
+  publish_report(folder, arguments.output, arguments.tau);
+  publish_text(arguments.output / "report.txt",
+               formatted(folder, arguments.tau, ReportFormat::text));
+}
+
+void report_folder(const ReportArguments& arguments, const std::filesystem::path& folder) {
+  const ReportFormat format = arguments.json ? ReportFormat::json : arguments.format;
+  const std::string shown = formatted(folder, arguments.tau, format);
+  if (!arguments.output.empty()) write_files(arguments, folder);
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
 
 void report(const ReportArguments& arguments) {
@@ -46,11 +71,10 @@ void report(const ReportArguments& arguments) {
                                  "{}",
                                  arguments.tau, kComparisonTau));
   }
-  const Report made = report_of(arguments);
-  const std::string text = report_text(made);
-  const std::string json = report_json(made).dump(2) + "\n";
-  if (!arguments.output.empty()) write_files(arguments.output, text, json);
-  std::fputs((arguments.json ? json : text).c_str(), stdout);
+  if (!arguments.of_service) return report_folder(arguments, arguments.target);
+  ServiceClient service(arguments.service);
+  const FetchedJob job(service, arguments.target);
+  report_folder(arguments, job.folder());
 }
 
 }  // namespace
@@ -62,14 +86,21 @@ void add_report(CLI::App& app) {
   verb->add_option("target", arguments->target,
                    "Job folder, of a run that goes on or has ended; with --server, the job's id")
       ->required();
-  verb->add_flag("--json", arguments->json, "Print JSON for programs");
+  const std::map<std::string, ReportFormat> formats{{"text", ReportFormat::text},
+                                                    {"json", ReportFormat::json},
+                                                    {"markdown", ReportFormat::markdown},
+                                                    {"html", ReportFormat::html}};
+  CLI::Option* format =
+      verb->add_option("--format", arguments->format,
+                       "text, json, markdown, or html: one page with plots and pictures")
+          ->transform(CLI::CheckedTransformer(formats).description("{text,json,markdown,html}"));
+  verb->add_flag("--json", arguments->json, "The same as --format json")->excludes(format);
   verb->add_option("--tau", arguments->tau, "Time filter of pressures, s")->capture_default_str();
-  verb->add_option("--output", arguments->output,
-                   "Also write report.txt and report.json into this folder");
+  verb->add_option(
+      "--output", arguments->output,
+      "Also write report.txt, report.json, report.md and report.html into this folder");
   add_service_switch(*verb, arguments->service, arguments->of_service);
-  verb->footer(
-      "Example: sluice report dambreak-paper\n"
-      "         sluice report j0r2mt1q8kq0f7a3c1d2e --server http://127.0.0.1:8080");
+  verb->footer("Example: sluice report dambreak-paper --format html > dambreak-paper.html");
   verb->callback([arguments] { report(*arguments); });
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/run/build_id.hpp"
+#include "engine/run/machine_name.hpp"
 #include "engine/run/reporter.hpp"
 #include "engine/store/digest.hpp"
 
@@ -46,6 +47,7 @@ Json cost_json(const Account& account) {
         {{"name", line.name}, {"seconds", line.seconds}, {"share", share(line.seconds, account)}});
   }
   return Json{{"seconds", account.seconds},
+              {"core_seconds", account.core_seconds},
               {"steps", account.steps},
               {"particle_steps", account.particle_steps},
               {"particle_steps_per_second", account.rate()},
@@ -85,6 +87,7 @@ Outcome describe_simulation(const Simulation& simulation) {
   const Solver& solver = simulation.solver();
   Outcome outcome;
   outcome.build = build_id();
+  outcome.machine = machine_name();
   outcome.simd_target = solver.simd_target();
   outcome.threads = solver.threads();
   outcome.bit_exact = simulation.bit_exact();
@@ -122,6 +125,7 @@ Json to_json(const Outcome& outcome) {
   object["digests"] = digests_json(outcome);
   object["bit_exact"] = outcome.bit_exact;
   object["build"] = outcome.build;
+  object["machine"] = outcome.machine;
   object["simd_target"] = outcome.simd_target;
   object["threads"] = outcome.threads;
   object["this_attempt"] = cost_json(outcome.account);

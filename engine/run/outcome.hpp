@@ -16,7 +16,8 @@ namespace sluice {
 
 /// What an attempt cost. Only this attempt: a resumed run counts from its checkpoint on.
 struct Account {
-  double seconds = 0.0;  ///< wall time from the first step to the last, everything included
+  double seconds = 0.0;       ///< wall time from the first step to the last, everything included
+  double core_seconds = 0.0;  ///< processor time of all threads in that time
   std::uint64_t steps = 0;
   std::uint64_t particle_steps = 0;
   std::array<double, kPassCount> pass_seconds{};
@@ -35,6 +36,7 @@ struct Outcome {
   std::string reason;  ///< empty when the run is complete
   std::optional<Diagnosis> diagnosis;
   std::string build;
+  std::string machine;  ///< processor and number of cores
   std::string simd_target;
   int threads = 1;
   bool bit_exact = true;

@@ -9,6 +9,7 @@
 
 #include "engine/run/build_id.hpp"
 #include "engine/run/job_writer.hpp"
+#include "engine/run/machine_name.hpp"
 #include "engine/run/signals.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/run/stopwatch.hpp"
@@ -128,6 +129,7 @@ class RunLoop {
     outcome.exit_code = code;
     outcome.reason = std::move(reason);
     outcome.account.seconds = clock_.seconds();
+    outcome.account.core_seconds = core_clock_.seconds();
     outcome.account.steps = simulation_->solver().step_count() - first_step_;
     writer_.account(outcome.account);
     if (code == ExitCode::done || code == ExitCode::checkpointed) {
@@ -141,6 +143,7 @@ class RunLoop {
   Reporter* reporter_;
   Simulation* simulation_;
   Stopwatch clock_;
+  CoreStopwatch core_clock_;
   JobWriter writer_;
   RateMeter rate_;
   std::uint64_t first_step_;
@@ -179,6 +182,7 @@ Outcome failed_at_start(JobFolder& folder, const Scene& scene, const NumericalFa
   outcome.reason = failure.what();
   outcome.diagnosis = failure.diagnosis();
   outcome.build = build_id();
+  outcome.machine = machine_name();
   outcome.end_time = scene.end_time;
   folder.publish_text(folder.paths().outcome(), to_json(outcome).dump(2) + "\n");
   return outcome;

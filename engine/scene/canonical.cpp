@@ -20,7 +20,7 @@ std::string canonical_text(const Scene& scene) { return write_json(to_json(scene
 
 std::string identity_text(const Scene& scene) {
   nlohmann::json object = to_json(scene);
-  for (const char* key : {"name", "description", "end_time"}) object.erase(key);
+  for (const char* key : {"name", "description", "end_time", "reference"}) object.erase(key);
   return write_json(object);
 }
 

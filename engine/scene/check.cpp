@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -148,6 +149,53 @@ void check_stability(const Scene& scene, Problems& problems) {
                            p.courant, remedy, p.growth_per_step, p.growth_decades));
 }
 
+void check_curve(const ReferenceCurve& curve, const std::string& pointer, const Scene& scene,
+                 Problems& problems) {
+  const auto named = [&](const Sensor& sensor) { return sensor.name == curve.sensor; };
+  if (std::none_of(scene.sensors.begin(), scene.sensors.end(), named)) {
+    std::vector<std::string_view> names;
+    for (const Sensor& sensor : scene.sensors) names.push_back(sensor.name);
+    problems.add(at(pointer, "sensor"),
+                 fmt::format("is \"{}\", which is no sensor of this scene; {}", curve.sensor,
+                             hint(curve.sensor, names)));
+  }
+  for (std::size_t i = 1; i < curve.time.size(); ++i) {
+    if (curve.time[i - 1] < curve.time[i]) continue;
+    problems.add(at(at(pointer, "time"), i), fmt::format("is {:.6g} after {:.6g}; times must "
+                                                         "increase",
+                                                         curve.time[i], curve.time[i - 1]));
+    break;
+  }
+  const auto check_length = [&](std::string_view key, const std::vector<double>& values) {
+    if (values.size() == curve.time.size()) return;
+    problems.add(at(pointer, key), fmt::format("has {} numbers; must have one for each of the {} "
+                                               "times",
+                                               values.size(), curve.time.size()));
+  };
+  check_length("value", curve.value);
+  if (!curve.low.empty() || !curve.high.empty()) {
+    check_length("low", curve.low);
+    check_length("high", curve.high);
+  }
+}
+
+void check_reference(const Document& document, Problems& problems) {
+  const auto& reference = document.scene.reference;
+  if (!reference || !problems.clean({"/reference", "/sensors"})) return;
+  const bool scaled = document.scene.scales && !document.gravity.value_or(Vec::Zero()).isZero(0.0);
+  const bool wants_scales = reference->kind == ReferenceKind::experiment ||
+                            (reference->kind == ReferenceKind::series &&
+                             reference->units == ReferenceUnits::dimensionless);
+  if (wants_scales && !scaled) {
+    problems.add("/reference",
+                 "is dimensionless, but the scene has no scales or no gravity to "
+                 "make its series so: add the keys scales and gravity");
+  }
+  for (std::size_t i = 0; i < reference->curves.size(); ++i) {
+    check_curve(reference->curves[i], at("/reference/curves", i), document.scene, problems);
+  }
+}
+
 }  // namespace
 
 void check(const Document& document, StabilityCheck stability, Problems& problems) {
@@ -157,6 +205,7 @@ void check(const Document& document, StabilityCheck stability, Problems& problem
   check_tank(written, problems);
   check_gravity(document, problems);
   check_names(written, problems);
+  check_reference(document, problems);
   if (!problems.clean(
           {"/tank", "/fluid", "/obstacles", "/gravity", "/material", "/resolution", "/numerics"})) {
     return;

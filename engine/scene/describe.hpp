@@ -21,6 +21,8 @@ inline constexpr Range kSoundSpeed = from(1e-6, 1e7);
 inline constexpr std::size_t kMaxShapes = 64;
 inline constexpr std::size_t kMaxPolygonPoints = 256;
 inline constexpr std::size_t kMaxSensors = 128;
+inline constexpr std::size_t kMaxReferenceCurves = 32;
+inline constexpr std::size_t kMaxReferencePoints = 2000;
 
 template <class Archive>
 void describe(Archive& a, Rectangle& shape) {
@@ -255,6 +257,61 @@ void describe(Archive& a, Scales& scales) {
 }
 
 template <class Archive>
+void describe(Archive& a, ReferenceCurve& curve) {
+  constexpr std::size_t kMost = kMaxReferencePoints;
+  constexpr NumberSpec kValue{.about = "number", .range = from(-1e12, 1e12)};
+  a.text("sensor", curve.sensor,
+         {.about = "name of the sensor that should measure this; of its columns the first",
+          .min = 1,
+          .max = 32,
+          .need = Need::required});
+  a.numbers("time", curve.time,
+            {.about = "times, increasing; each value stands for the time up to half way to its "
+                      "neighbours",
+             .min = 2,
+             .max = kMost,
+             .need = Need::required},
+            kValue);
+  a.numbers("value", curve.value,
+            {.about = "one value per time", .min = 2, .max = kMost, .need = Need::required},
+            kValue);
+  a.numbers("low", curve.low,
+            {.about = "lower edge of a band around the values, one number per time", .max = kMost},
+            kValue);
+  a.numbers("high", curve.high, {.about = "upper edge of that band", .max = kMost}, kValue);
+}
+
+template <class Archive>
+void describe_reference_series(Archive& a, SceneReference& reference) {
+  a.text("title", reference.title,
+         {.about = "what it is, for headings",
+          .characters = Characters::sentence,
+          .min = 1,
+          .max = 200,
+          .need = Need::required});
+  a.text("citation", reference.citation,
+         {.about = "where it is from", .characters = Characters::sentence, .max = 500});
+  a.word("units", kReferenceUnitWords, reference.units, {.about = "units of times and values"});
+  a.list("curves", reference.curves,
+         {.about = "what sensors should have measured",
+          .min = 1,
+          .max = kMaxReferenceCurves,
+          .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, SceneReference& reference) {
+  a.choice("kind", kReferenceWords, reference.kind, "where its figures are",
+           [&](auto& branch, ReferenceKind kind) {
+             reference.kind = kind;
+             if (kind == ReferenceKind::experiment) {
+               branch.word("name", kExperimentWords, reference.experiment, {.about = "which one"});
+             }
+             if (kind == ReferenceKind::series) describe_reference_series(branch, reference);
+           });
+}
+
+template <class Archive>
 void describe_material(Archive& a, Document& document) {
   a.number("density", document.scene.method.reference_density,
            {.about = "reference density rho_0", .unit = "kg/m^3", .range = from(1e-3, 1e5)});
@@ -319,6 +376,10 @@ void describe(Archive& a, Document& document) {
   a.section("scales", scene.scales,
             {.about = "lengths that make results dimensionless",
              .otherwise = "no dimensionless results"});
+  a.section("reference", scene.reference,
+            {.about = "what reports compare the series with; it changes nothing in the run",
+             .otherwise = "the built-in experiment whose tank and column have the scene's shape, "
+                          "if any"});
   a.number("end_time", scene.end_time,
            {.about = "the run ends at the first step at or after it",
             .unit = "s",

@@ -174,6 +174,17 @@ void Reader::points(std::string_view key, std::vector<Vec>& member, const ListSp
   }
 }
 
+void Reader::numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
+                     const NumberSpec& each) {
+  const json* found = find_list(key, spec);
+  if (found == nullptr) return;
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    if (const auto value = read_number((*found)[i], at(at(pointer_, key), i), each)) {
+      member.push_back(*value);
+    }
+  }
+}
+
 void Reader::finish() {
   if (!is_object_ || any_key_) return;
   for (const auto& [key, value] : value_.items()) {

@@ -29,6 +29,8 @@ class Reader {
   void vector(std::string_view key, std::optional<Vec>& member, const NumberSpec& spec);
   void points(std::string_view key, std::vector<Vec>& member, const ListSpec& spec,
               const NumberSpec& point);
+  void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
+               const NumberSpec& each);
 
   template <class Enum, std::size_t n>
   void word(std::string_view key, const Words<Enum, n>& words, Enum& member, const KeySpec& spec) {

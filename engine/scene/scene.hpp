@@ -81,6 +81,39 @@ struct Scales {
   double width = 0.0;   ///< w0, m
 };
 
+/// An experiment whose figures are built into the program, schemas/references.
+enum class Experiment { lobovsky2014_h300 };
+
+enum class ReferenceKind {
+  experiment,  ///< a built-in one
+  series,      ///< the scene brings its own curves
+  none,        ///< compare with nothing, even where an experiment has the scene's shape
+};
+
+/// si: s and the sensor's own unit. dimensionless: divided as eqs. 19-22 say, by the scene's
+/// scales.
+enum class ReferenceUnits { si, dimensionless };
+
+/// What one sensor should have measured. `low` and `high` are empty or, like `value`, as long as
+/// `time`, which increases strictly.
+struct ReferenceCurve {
+  std::string sensor;
+  std::vector<double> time;
+  std::vector<double> value;
+  std::vector<double> low;  ///< lower edge of a band around the value, such as a percentile
+  std::vector<double> high;
+};
+
+/// What a run's series are compared with when they are reported. It changes nothing in the run.
+struct SceneReference {
+  ReferenceKind kind = ReferenceKind::none;
+  Experiment experiment = Experiment::lobovsky2014_h300;
+  std::string title;
+  std::string citation;
+  ReferenceUnits units = ReferenceUnits::si;
+  std::vector<ReferenceCurve> curves;
+};
+
 /// What to simulate: a parsed and validated scene. An absent part is left out of the run.
 struct Scene {
   std::string name;
@@ -93,6 +126,7 @@ struct Scene {
   std::optional<Jitter> jitter;
   std::optional<Frames> frames;
   std::optional<Scales> scales;
+  std::optional<SceneReference> reference;
   double end_time = 0.0;  ///< s; the run ends at the first step at or after it
 };
 

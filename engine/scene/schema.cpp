@@ -101,6 +101,11 @@ void SchemaWriter::points(std::string_view key, std::vector<Vec>& /*member*/, co
   put_list(key, describe_vector(point), spec);
 }
 
+void SchemaWriter::numbers(std::string_view key, std::vector<double>& /*member*/,
+                           const ListSpec& spec, const NumberSpec& each) {
+  put_list(key, describe_number(each), spec);
+}
+
 json SchemaWriter::schema() const {
   if (!branches_.empty()) return {{"oneOf", branches_}};
   json result = {{"type", "object"}, {"properties", properties_}};

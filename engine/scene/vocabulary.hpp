@@ -65,4 +65,18 @@ inline constexpr Words<SensorKind, 6> kSensorWords{{
     {"arrival", SensorKind::arrival, "distance of the nearest fluid to a point"},
 }};
 
+inline constexpr Words<Experiment, 1> kExperimentWords{{
+    {"lobovsky2014_h300", Experiment::lobovsky2014_h300,
+     "dam break of Lobovsky et al. 2014, column 300 mm high"},
+}};
+inline constexpr Words<ReferenceKind, 3> kReferenceWords{{
+    {"experiment", ReferenceKind::experiment, "built into the program"},
+    {"series", ReferenceKind::series, "curves that stand here"},
+    {"none", ReferenceKind::none, "no comparison"},
+}};
+inline constexpr Words<ReferenceUnits, 2> kReferenceUnitWords{{
+    {"si", ReferenceUnits::si, "s and the sensor's unit"},
+    {"dimensionless", ReferenceUnits::dimensionless, "by the scales, eqs. 19-22"},
+}};
+
 }  // namespace sluice

@@ -32,6 +32,10 @@ class Writer {
     for (const Vec& each : member) all.push_back(array(each));
     put(key, std::move(all));
   }
+  void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
+               const NumberSpec&) {
+    if (!member.empty() || spec.need == Need::required) put(key, member);
+  }
 
   template <class Enum, std::size_t n>
   void word(std::string_view key, const Words<Enum, n>& words, Enum& member, const KeySpec&) {

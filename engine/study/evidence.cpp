@@ -95,6 +95,7 @@ PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& r
   evidence.experiment.arrival = pair.reference->arrival;
   evidence.relative_l2 =
       relative_l2(reference.pressure_times, averages, pair.reference->values, kComparisonWindow);
+  evidence.simulated = std::move(pair.curve);
   return evidence;
 }
 
@@ -122,11 +123,11 @@ void compare_levels(Evidence& evidence, const Scene& scene, const std::vector<Se
         sensor_at(scene, reference, SensorKind::surface_height, one.x, std::nullopt);
     const Series* series = sensor != nullptr ? series_of(all, *sensor) : nullptr;
     if (series == nullptr) continue;
-    const Curve curve = scaled_curve(*series, scene, 0.0, scene.scales->height);
-    evidence.levels.push_back(
-        {sensor->name, one.name,
-         rms_difference(reference.level_times, interval_averages(curve, reference.level_times),
-                        one.values, everything)});
+    Curve curve = scaled_curve(*series, scene, 0.0, scene.scales->height);
+    const auto difference =
+        rms_difference(reference.level_times, interval_averages(curve, reference.level_times),
+                       one.values, everything);
+    evidence.levels.push_back({sensor->name, one.name, difference, std::move(curve)});
   }
 }
 
@@ -151,12 +152,14 @@ void compare_front(Evidence& evidence, const Scene& scene, const std::vector<Ser
   for (const Sensor& sensor : scene.sensors) {
     const Series* series = series_of(all, sensor);
     if (sensor.kind != SensorKind::surge_front || series == nullptr) continue;
-    const Curve curve = scaled_curve(*series, scene, scene.scales->width, scene.scales->height);
+    Curve curve = scaled_curve(*series, scene, scene.scales->width, scene.scales->height);
     const Intervals times(measured.time);
     evidence.front = FrontEvidence{
         sensor.name,
         rms_difference(times, interval_averages(curve, times), measured.value, {-1.0, 1e9}),
-        front_delay(curve, measured)};
+        front_delay(curve, measured),
+        {}};
+    evidence.front->simulated = std::move(curve);
     return;
   }
 }

@@ -41,6 +41,7 @@ struct PressureEvidence {
   PressureMeasures experiment;  ///< of one test; its peak is peak_statistics' business
   PeakStatistics peak_statistics;
   std::optional<double> relative_l2;
+  Curve simulated;  ///< P over T, filtered and shifted
 
   /// Where the simulated peak lies among the tests: 0 at the 2.5th, 1 at the 97.5th percentile.
   [[nodiscard]] std::optional<double> place_in_band() const;
@@ -50,12 +51,14 @@ struct LevelEvidence {
   std::string sensor;
   std::string reference;
   std::optional<double> rms_difference;  ///< h/h0
+  Curve simulated;                       ///< h/h0 over T, not shifted
 };
 
 struct FrontEvidence {
   std::string sensor;
   std::optional<double> rms_difference;  ///< (w - w0)/h0
   std::optional<double> delay;  ///< T that the simulation comes later at the same place, mean
+  Curve simulated;              ///< (w - w0)/h0 over T, not shifted
 };
 
 /// A run against an experiment.

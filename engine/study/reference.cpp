@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "engine/scene/vocabulary.hpp"
 #include "sluice/reference_texts.hpp"
 
 namespace sluice {
@@ -22,6 +23,18 @@ std::vector<double> numbers(const json& values, std::size_t expected, const char
   return result;
 }
 
+/// Where a file has percentiles of a sensor, under its name and _band.
+std::optional<PressureBand> read_band(const json& file, const std::string& name,
+                                      std::size_t count) {
+  const auto found = file.find(name + "_band");
+  if (found == file.end()) return std::nullopt;
+  if (found->at("t") != file.at("event").at("t")) {
+    throw std::runtime_error(fmt::format("{}_band has other times than event", name));
+  }
+  return PressureBand{numbers(found->at("p2.5"), count, "p2.5 of a band"),
+                      numbers(found->at("p97.5"), count, "p97.5 of a band")};
+}
+
 std::vector<PressureReference> read_pressures(const json& file, std::size_t count) {
   std::vector<PressureReference> all;
   for (const auto& [name, height] : file.at("geometry_m").at("pressure_z").items()) {
@@ -33,6 +46,7 @@ std::vector<PressureReference> read_pressures(const json& file, std::size_t coun
     sensor.values = numbers(file.at("event").at(name), count, name.c_str());
     sensor.peak = {peak.at("median").get<double>(), peak.at("p2.5").get<double>(),
                    peak.at("p97.5").get<double>()};
+    sensor.band = read_band(file, name, count);
     all.push_back(std::move(sensor));
   }
   return all;
@@ -114,6 +128,14 @@ const std::vector<Reference>& references() {
     return read;
   }();
   return all;
+}
+
+const Reference& reference_of(Experiment experiment) {
+  const std::string_view name = word_for(kExperimentWords, experiment);
+  for (const Reference& reference : references()) {
+    if (reference.name == name) return reference;
+  }
+  throw std::logic_error(fmt::format("no built-in reference {}", name));
 }
 
 const Reference* matching_reference(const Scene& scene) {

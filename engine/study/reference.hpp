@@ -16,6 +16,12 @@ struct PeakStatistics {
   double high = 0.0;  ///< 97.5th percentile
 };
 
+/// How far repeated tests lie apart: percentiles of P, one average per interval.
+struct PressureBand {
+  std::vector<double> low;   ///< 2.5th percentile
+  std::vector<double> high;  ///< 97.5th percentile
+};
+
 /// A pressure sensor of an experiment on the wall that the surge hits.
 struct PressureReference {
   std::string name;
@@ -23,6 +29,7 @@ struct PressureReference {
   double arrival = 0.0;        ///< T
   std::vector<double> values;  ///< P, one average per interval
   PeakStatistics peak;
+  std::optional<PressureBand> band;
 };
 
 /// A place where the surface was measured.
@@ -54,6 +61,9 @@ struct Reference {
 
 /// The references that are built into the program.
 [[nodiscard]] const std::vector<Reference>& references();
+
+/// The built-in reference of this name. Throws std::logic_error when the program has lost it.
+[[nodiscard]] const Reference& reference_of(Experiment experiment);
 
 /// The reference whose tank and column have the shape of the scene's, whatever their size: tank
 /// width and column width in column heights within 1 %. Nothing for a scene without gravity

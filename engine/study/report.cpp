@@ -9,6 +9,7 @@
 #include "engine/store/file_system.hpp"
 #include "engine/store/filter.hpp"
 #include "engine/store/job_folder.hpp"
+#include "engine/store/publish.hpp"
 #include "engine/store/series_file.hpp"
 
 namespace sluice {
@@ -47,39 +48,109 @@ nlohmann::ordered_json read_outcome(const JobPaths& paths) {
   return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes), nullptr, false);
 }
 
+/// What the scene is compared with: the reference it names, else an experiment of its shape.
+const Reference* experiment_of(const Scene& scene) {
+  if (!scene.reference) return matching_reference(scene);
+  if (scene.reference->kind != ReferenceKind::experiment) return nullptr;
+  return &reference_of(scene.reference->experiment);
+}
+
+/// Times of the pictures, s.
+std::vector<double> picture_times(const Scene& scene) {
+  const double gravity = scene.method.gravity.norm();
+  if (!scene.scales || gravity == 0.0) {
+    return {0.25 * scene.end_time, 0.75 * scene.end_time, scene.end_time};
+  }
+  const double unit = std::sqrt(scene.scales->height / gravity);
+  return {2.0 * unit, 5.9 * unit, 7.8 * unit};
+}
+
+std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
+  if (scene.sensors.empty()) return {};
+  if (!std::filesystem::exists(paths.series())) {
+    throw StorageError(StorageFault::io,
+                       fmt::format("{}: the run has written no series yet: report when it has run "
+                                   "for a second",
+                                   paths.series().string()));
+  }
+  return read_series(paths.series());
+}
+
 }  // namespace
+
+std::optional<double> Report::error() const {
+  if (series_evidence) return series_evidence->mean_relative_l2;
+  return evidence ? evidence->mean_relative_l2 : std::nullopt;
+}
 
 Report make_report(const Scene& scene, const std::vector<Series>& series,
                    const nlohmann::ordered_json& outcome, double tau) {
-  Report report{scene, tau, {}, std::nullopt, outcome};
+  Report report{scene, tau, {}, std::nullopt, std::nullopt, outcome, {}, {}};
   if (!report.outcome.is_object()) report.outcome = nullptr;
   for (const Series& one : series) {
     for (std::size_t column = 0; column < one.columns.size(); ++column) {
       report.sensors.push_back(summarise(one, column, tau));
     }
   }
-  const Reference* reference = matching_reference(scene);
-  if (reference != nullptr) report.evidence = compare(scene, series, *reference, tau);
+  if (const Reference* reference = experiment_of(scene)) {
+    report.evidence = compare(scene, series, *reference, tau);
+  }
+  if (scene.reference && scene.reference->kind == ReferenceKind::series) {
+    report.series_evidence = compare_series(scene, series, *scene.reference, tau);
+  }
+  report.facts = run_facts(report.outcome);
+  report.conservation = conservation_of(series, report.facts);
   return report;
 }
 
-Report report_of_folder(const std::filesystem::path& folder, double tau) {
+JobRecord read_job(const std::filesystem::path& folder) {
   const JobPaths paths(folder);
   if (!JobFolder::holds_job(folder)) {
     throw StorageError(
         StorageFault::not_ours,
         fmt::format("{}: holds no job; name a folder that `sluice run` made", folder.string()));
   }
-  const ParseResult parsed =
+  ParseResult parsed =
       parse_scene(read_text(paths.scene(), kMaxTextBytes), StabilityCheck::skip);
   if (!parsed.scene) throw SceneError(parsed.problems.front());
-  if (!std::filesystem::exists(paths.series())) {
-    throw StorageError(StorageFault::io,
-                       fmt::format("{}: the run has written no series yet; a scene without "
-                                   "sensors never does",
-                                   paths.series().string()));
+  std::vector<Series> series = read_series_of(paths, *parsed.scene);
+  return {*std::move(parsed.scene), std::move(series), read_outcome(paths)};
+}
+
+Report report_of_folder(const std::filesystem::path& folder, double tau) {
+  const JobRecord job = read_job(folder);
+  return make_report(job.scene, job.series, job.outcome, tau);
+}
+
+std::vector<Frame> picture_frames(const std::filesystem::path& folder, const Scene& scene) {
+  std::vector<Frame> frames;
+  if (!scene.frames) return frames;
+  const JobPaths paths(folder);
+  std::uint64_t last = 0;
+  for (const double time : picture_times(scene)) {
+    const auto index = static_cast<std::uint64_t>(std::lround(time / scene.frames->interval));
+    if (time > scene.end_time * (1 + 1e-3) || (!frames.empty() && index == last)) continue;
+    last = index;
+    try {
+      if (std::filesystem::exists(paths.frame(index))) {
+        frames.push_back(read_frame(paths.frame(index)));
+      }
+    } catch (const StorageError&) {
+      continue;  // A report without one of its pictures is still worth having.
+    }
   }
-  return make_report(*parsed.scene, read_series(paths.series()), read_outcome(paths), tau);
+  return frames;
+}
+
+void publish_report(const std::filesystem::path& folder, const std::filesystem::path& target,
+                    double tau) {
+  const JobRecord job = read_job(folder);
+  const Report report = make_report(job.scene, job.series, job.outcome, tau);
+  const JobPaths paths(target);
+  publish_text(paths.report(), report_json(report).dump(2) + "\n");
+  publish_text(paths.report_markdown(), report_markdown(report));
+  publish_text(paths.report_html(),
+               report_html(report, job.series, picture_frames(folder, job.scene)));
 }
 
 }  // namespace sluice

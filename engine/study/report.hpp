@@ -7,8 +7,11 @@
 #include <vector>
 
 #include "engine/scene/scene.hpp"
+#include "engine/store/frame_io.hpp"
 #include "engine/store/series.hpp"
 #include "engine/study/evidence.hpp"
+#include "engine/study/run_facts.hpp"
+#include "engine/study/series_evidence.hpp"
 
 namespace sluice {
 
@@ -25,30 +28,60 @@ struct SensorSummary {
   std::optional<double> last;
 };
 
-/// What a run came to: its sensors, its comparison with an experiment where one matches, and its
-/// outcome.
+/// What a run came to: its sensors, its comparison with a reference where it has one, its cost and
+/// its outcome.
 struct Report {
   Scene scene;
   double tau = kComparisonTau;  ///< time filter of pressures, s
   std::vector<SensorSummary> sensors;
-  std::optional<Evidence> evidence;  ///< absent: no experiment matches the scene
-  nlohmann::ordered_json outcome;    ///< outcome.json; null while the run has not ended
+  std::optional<Evidence> evidence;  ///< against an experiment: the scene's own or one of its shape
+  std::optional<SeriesEvidence> series_evidence;  ///< against the curves of the scene
+  nlohmann::ordered_json outcome;                 ///< outcome.json; null while the run goes on
+  RunFacts facts;                                 ///< the same, read
+  Conservation conservation;
+
+  /// The mean relative L2 of the reference's sensors, whatever kind it is.
+  [[nodiscard]] std::optional<double> error() const;
 };
 
 [[nodiscard]] Report make_report(const Scene& scene, const std::vector<Series>& series,
                                  const nlohmann::ordered_json& outcome,
                                  double tau = kComparisonTau);
 
-/// Reads scene.json, series.h5 and, where there is one, outcome.json of a job folder; the run may
-/// be going on. Throws StorageError when the folder holds no job or its series cannot be read, and
-/// SceneError for a scene that cannot.
+/// What is read of a job folder: scene.json, series.h5 and, where there is one, outcome.json. The
+/// run may be going on.
+struct JobRecord {
+  Scene scene;
+  std::vector<Series> series;
+  nlohmann::ordered_json outcome;
+};
+
+/// Throws StorageError when the folder holds no job or its series cannot be read or are not there
+/// yet, and SceneError for a scene that cannot.
+[[nodiscard]] JobRecord read_job(const std::filesystem::path& folder);
 [[nodiscard]] Report report_of_folder(const std::filesystem::path& folder,
                                       double tau = kComparisonTau);
 
-/// For people: tables of at most 100 columns. "-" is a value that there is none of.
+/// For people: tables. "-" is a value that there is none of.
 [[nodiscard]] std::string report_text(const Report& report);
+[[nodiscard]] std::string report_markdown(const Report& report);
 
 /// For programs: the same figures, null where there is none.
 [[nodiscard]] nlohmann::ordered_json report_json(const Report& report);
+
+/// One page without scripts that loads nothing: the tables, every sensor's plot and a picture of
+/// each of `frames`, coloured by pressure. `series` as for make_report.
+[[nodiscard]] std::string report_html(const Report& report, const std::vector<Series>& series,
+                                      const std::vector<Frame>& frames);
+
+/// The frames of a job nearest to the times of the paper's pictures (T = 2.0, 5.9, 7.8) or, without
+/// scales, to a quarter, three quarters and the end. A frame that cannot be read is left out.
+[[nodiscard]] std::vector<Frame> picture_frames(const std::filesystem::path& folder,
+                                                const Scene& scene);
+
+/// Makes a report of a finished or running job and publishes report.json, report.md and report.html
+/// in `target`. Throws what report_of_folder() and publish_text() throw.
+void publish_report(const std::filesystem::path& folder, const std::filesystem::path& target,
+                    double tau = kComparisonTau);
 
 }  // namespace sluice

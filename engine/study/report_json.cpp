@@ -1,6 +1,8 @@
 #include <optional>
 
+#include "engine/scene/plan.hpp"
 #include "engine/study/report.hpp"
+#include "engine/study/report_tables.hpp"
 
 namespace sluice {
 namespace {
@@ -70,6 +72,55 @@ Json evidence_json(const Evidence& evidence) {
               {"front", std::move(front)}};
 }
 
+Json curves_json(const SeriesEvidence& evidence) {
+  Json curves = Json::array();
+  for (const CurveEvidence& one : evidence.curves) {
+    curves.push_back({{"sensor", one.sensor},
+                      {"unit", one.unit},
+                      {"relative_l2", value_of(one.relative_l2)},
+                      {"rms_difference", value_of(one.rms_difference)},
+                      {"highest", value_of(one.simulated_peak)},
+                      {"expected_highest", value_of(one.expected_peak)}});
+  }
+  return Json{{"title", evidence.title},
+              {"citation", evidence.citation},
+              {"units", evidence.units == ReferenceUnits::si ? "si" : "dimensionless"},
+              {"tau_s", evidence.tau},
+              {"shift", 0.0},
+              {"mean_relative_l2", value_of(evidence.mean_relative_l2)},
+              {"curves", std::move(curves)}};
+}
+
+Json cost_json(const RunFacts& facts) {
+  Json passes = Json::array();
+  for (const PassCost& pass : facts.passes) {
+    passes.push_back({{"name", pass.name}, {"seconds", pass.seconds}, {"share", pass.share}});
+  }
+  return Json{{"core_seconds", value_of(facts.core_seconds)},
+              {"core_seconds_scaled_from_last_attempt", facts.core_seconds_scaled},
+              {"seconds_of_last_attempt", value_of(facts.seconds)},
+              {"particle_steps_per_second", value_of(facts.particle_steps_per_second)},
+              {"passes", std::move(passes)}};
+}
+
+Json conservation_json(const Conservation& kept) {
+  return Json{{"energy_scale_J_per_m", value_of(kept.energy_scale)},
+              {"energy_at_start_J_per_m", value_of(kept.first_energy)},
+              {"energy_at_end_J_per_m", value_of(kept.last_energy)},
+              {"highest_energy_J_per_m", value_of(kept.highest_energy)},
+              {"share_of_mass_that_left", value_of(kept.lost_mass)}};
+}
+
+Json left_out_json(const Scene& scene) {
+  Json all = Json::array();
+  const Plan parts = plan(scene);
+  for (const auto* items :
+       {&parts.passes_left_out, &parts.fields_left_out, &parts.files_left_out}) {
+    for (const PlanItem& item : *items) all.push_back({{"name", item.name}, {"why", item.reason}});
+  }
+  return all;
+}
+
 Json sensor_json(const SensorSummary& sensor) {
   return Json{{"name", sensor.name},
               {"kind", sensor.kind},
@@ -88,11 +139,19 @@ Json report_json(const Report& report) {
   Json sensors = Json::array();
   for (const SensorSummary& sensor : report.sensors) sensors.push_back(sensor_json(sensor));
   Json object{{"scene", report.scene.name},
+              {"description", report.scene.description},
+              {"scheme", scheme_text(report.scene)},
               {"spacing_m", report.scene.method.spacing},
               {"smoothing_length_m", report.scene.method.smoothing_length},
               {"tau_s", report.tau},
               {"sensors", std::move(sensors)}};
   object["evidence"] = report.evidence ? evidence_json(*report.evidence) : Json(nullptr);
+  object["series_evidence"] =
+      report.series_evidence ? curves_json(*report.series_evidence) : Json(nullptr);
+  object["error"] = value_of(report.error());
+  object["cost"] = cost_json(report.facts);
+  object["conservation"] = conservation_json(report.conservation);
+  object["left_out"] = left_out_json(report.scene);
   object["outcome"] = report.outcome;
   return object;
 }

@@ -130,7 +130,7 @@ TEST(IdentityText, SeesEveryOtherChange) {
   const json flat = text.flatten();
   for (const auto& [pointer, value] : flat.items()) {
     if (pointer == "/name" || pointer == "/description" || pointer == "/end_time") continue;
-    if (!value.is_number()) continue;
+    if (!value.is_number() || pointer.starts_with("/reference")) continue;
     json other = text;
     other[json::json_pointer(pointer)] =
         pointer == "/numerics/reinitialisation/interval" ? 8.0 : value.get<double>() * 1.001 + 1e-4;

@@ -25,7 +25,8 @@ inline std::string read_text(const std::filesystem::path& path) {
 inline std::vector<std::filesystem::path> json_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+    const bool study = entry.path().filename().string().starts_with("study-");
+    if (entry.path().extension() == ".json" && !study) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   EXPECT_FALSE(files.empty()) << folder;

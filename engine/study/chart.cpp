@@ -1,0 +1,333 @@
+#include "engine/study/chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace sluice {
+namespace {
+
+// Lengths in units of the view box, which are pixels at the size charts are made for.
+constexpr double kWidth = 560.0;
+constexpr double kPlotHeight = 270.0;
+constexpr double kLeft = 64.0;
+constexpr double kRight = 18.0;
+constexpr double kTitleHeight = 26.0;
+constexpr double kLegendRow = 20.0;
+constexpr double kLegendKey = 34.0;
+constexpr double kBottom = 50.0;
+constexpr double kLetter = 6.9;  ///< mean width of a letter at 13 units: for the legend's rows only
+
+constexpr std::string_view kStyle = R"(
+.chart { --ink: #1b1f24; --faint: #d0d7de; --frame: #57606a; --sim: #0059b3; --exp: #1b1f24;
+  --one: #0059b3; --two: #b35900; --three: #1a7f37; --four: #8250df; --band: #1b1f24; --halo: #ffffff; }
+@media (prefers-color-scheme: dark) {
+.chart { --ink: #e6edf3; --faint: #30363d; --frame: #8b949e; --sim: #58a6ff; --exp: #e6edf3;
+  --one: #58a6ff; --two: #f0883e; --three: #56d364; --four: #d2a8ff; --band: #e6edf3; --halo: #0d1117; } }
+.chart text { font: 13px system-ui, "DejaVu Sans", sans-serif; fill: var(--ink); }
+.chart .title { font-weight: 600; }
+.chart .grid { stroke: var(--faint); stroke-width: 1; }
+.chart .frame { stroke: var(--frame); stroke-width: 1; fill: none; }
+.chart .band { fill: var(--band); fill-opacity: 0.16; }
+.chart .line { fill: none; stroke-width: 1.4; stroke-linejoin: round; }
+.chart .mark { stroke-width: 1.3; fill: none; }
+.chart .word { font-size: 11px; paint-order: stroke; stroke: var(--halo); stroke-width: 3px; }
+.chart .simulation { stroke: var(--sim); }
+.chart .experiment { stroke: var(--exp); }
+.chart .experiment.line { stroke-dasharray: 6 3; stroke-width: 1.6; }
+.chart .first { stroke: var(--one); }
+.chart .second { stroke: var(--two); }
+.chart .third { stroke: var(--three); }
+.chart .fourth { stroke: var(--four); }
+)";
+
+constexpr std::array<std::string_view, 6> kInkNames{"simulation", "experiment", "first",
+                                                    "second",     "third",      "fourth"};
+std::string_view class_of(Ink ink) { return kInkNames[static_cast<std::size_t>(ink)]; }
+
+/// From values to places in the view box.
+struct Frame2d {
+  const Chart& chart;
+  double top;
+
+  static double share(const Axis& axis, double value) {
+    if (axis.scale == AxisScale::linear) return (value - axis.low) / (axis.high - axis.low);
+    return std::log(value / axis.low) / std::log(axis.high / axis.low);
+  }
+  [[nodiscard]] double x(double value) const {
+    return kLeft + share(chart.x, value) * (kWidth - kLeft - kRight);
+  }
+  [[nodiscard]] double y(double value) const {
+    return top + (1.0 - share(chart.y, value)) * kPlotHeight;
+  }
+  [[nodiscard]] double bottom() const { return top + kPlotHeight; }
+};
+
+struct Point {
+  double x, y;
+};
+
+/// The points of one pixel column, as few as draw the same: the first, the extremes, the last.
+void thin(const std::vector<Point>& column, std::vector<Point>& out) {
+  if (column.size() <= 4) {
+    out.insert(out.end(), column.begin(), column.end());
+    return;
+  }
+  const auto by_height = [](const Point& a, const Point& b) { return a.y < b.y; };
+  auto [low, high] = std::minmax_element(column.begin(), column.end(), by_height);
+  if (high < low) std::swap(low, high);
+  out.push_back(column.front());
+  out.push_back(*low);
+  out.push_back(*high);
+  out.push_back(column.back());
+}
+
+std::vector<Point> thinned(const std::vector<Point>& points) {
+  std::vector<Point> out, column;
+  for (const Point& point : points) {
+    if (!column.empty() && std::floor(point.x) != std::floor(column.front().x)) {
+      thin(column, out);
+      column.clear();
+    }
+    column.push_back(point);
+  }
+  thin(column, out);
+  return out;
+}
+
+std::string path_of(const std::vector<Point>& points) {
+  std::string path;
+  for (const Point& point : points) {
+    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? "M" : " ", point.x,
+                   point.y);
+  }
+  return path;
+}
+
+/// A line far off the plot is cut near it, so that no number is absurd.
+double tame(double place) { return std::clamp(place, -2000.0, 3000.0); }
+
+/// One path per stretch without NaN.
+std::string line_paths(const Frame2d& frame, const std::vector<double>& x,
+                       const std::vector<double>& y) {
+  std::string paths;
+  std::vector<Point> points;
+  const auto finish = [&] {
+    if (points.size() > 1) paths += path_of(thinned(points));
+    points.clear();
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool drawn =
+        std::isfinite(y[i]) && x[i] >= frame.chart.x.low && x[i] <= frame.chart.x.high;
+    if (!drawn) {
+      finish();
+      continue;
+    }
+    points.push_back({frame.x(x[i]), tame(frame.y(y[i]))});
+  }
+  finish();
+  return paths;
+}
+
+std::string band_svg(const Frame2d& frame, const ChartBand& band) {
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < band.x.size(); ++i) {
+    points.push_back({frame.x(band.x[i]), tame(frame.y(band.high[i]))});
+  }
+  for (std::size_t i = band.x.size(); i-- > 0;) {
+    points.push_back({frame.x(band.x[i]), tame(frame.y(band.low[i]))});
+  }
+  return fmt::format("<path class=\"band\" d=\"{}Z\"/>\n", path_of(points));
+}
+
+std::string mark_svg(Ink ink, double x, double y) {
+  if (ink == Ink::experiment) {
+    return fmt::format("<circle class=\"mark experiment\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\"/>",
+                       x, y);
+  }
+  if (ink == Ink::second) {
+    return fmt::format("<path class=\"mark second\" d=\"M{:.1f} {:.1f}l7 7m0 -7l-7 7\"/>", x - 3.5,
+                       y - 3.5);
+  }
+  return fmt::format("<path class=\"mark {}\" d=\"M{:.1f} {:.1f}l4.4 4.4l-4.4 4.4l-4.4 -4.4Z\"/>",
+                     class_of(ink), x, y - 4.4);
+}
+
+std::string bar_svg(Ink ink, double x, double from, double to) {
+  return fmt::format("<path class=\"mark {}\" d=\"M{:.1f} {:.1f}h8m-4 0V{:.1f}m-4 0h8\"/>",
+                     class_of(ink), x - 4.0, from, to);
+}
+
+std::string marks_svg(const Frame2d& frame, const ChartMarks& marks) {
+  std::string text;
+  for (std::size_t i = 0; i < marks.x.size(); ++i) {
+    const bool drawn = std::isfinite(marks.y[i]) && marks.x[i] >= frame.chart.x.low &&
+                       marks.x[i] <= frame.chart.x.high;
+    if (!drawn) continue;
+    const double x = frame.x(marks.x[i]);
+    const double y = tame(frame.y(marks.y[i]));
+    if (!marks.low.empty() && marks.high[i] > marks.low[i]) {
+      text += bar_svg(marks.ink, x, tame(frame.y(marks.low[i])), tame(frame.y(marks.high[i])));
+    }
+    text += mark_svg(marks.ink, x, y);
+    if (!marks.labels.empty()) {
+      const bool left = x > kWidth - 110.0;
+      text += fmt::format("<text class=\"word\" x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>",
+                          left ? x - 7.0 : x + 7.0, y - 5.0, left ? " text-anchor=\"end\"" : "",
+                          escaped(marks.labels[i]));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// One entry of the legend: a key of 26 by 12 units around (13, 0), and its name.
+struct LegendEntry {
+  std::string key;
+  std::string name;
+};
+
+std::vector<LegendEntry> legend_of(const Chart& chart) {
+  std::vector<LegendEntry> entries;
+  for (const ChartLine& line : chart.lines) {
+    if (line.name.empty()) continue;
+    entries.push_back(
+        {fmt::format("<path class=\"line {}\" d=\"M0 0h26\"/>", class_of(line.ink)), line.name});
+  }
+  for (const ChartMarks& marks : chart.marks) {
+    if (marks.name.empty()) continue;
+    std::string key = mark_svg(marks.ink, 13.0, 0.0);
+    if (!marks.low.empty()) key += bar_svg(marks.ink, 13.0, 7.0, -7.0);
+    entries.push_back({std::move(key), marks.name});
+  }
+  for (const ChartBand& band : chart.bands) {
+    if (band.name.empty()) continue;
+    entries.push_back(
+        {"<rect class=\"band\" x=\"0\" y=\"-6\" width=\"26\" height=\"12\"/>", band.name});
+  }
+  return entries;
+}
+
+/// The legend from y = 0 down, and how many rows it took.
+struct Legend {
+  std::string svg;
+  int rows = 0;
+};
+
+Legend lay_out(const std::vector<LegendEntry>& entries) {
+  Legend legend;
+  double x = kLeft;
+  for (const LegendEntry& entry : entries) {
+    const auto letters = std::count_if(entry.name.begin(), entry.name.end(), [](char c) {
+      return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+    });
+    const double width = kLegendKey + kLetter * static_cast<double>(letters) + 18.0;
+    if (legend.rows == 0 || (x > kLeft && x + width > kWidth)) {
+      ++legend.rows;
+      x = kLeft;
+    }
+    legend.svg += fmt::format(
+        "<g transform=\"translate({:.1f} {:.1f})\">{}<text x=\"{}\" y=\"4.5\">{}</text></g>\n", x,
+        (legend.rows - 0.5) * kLegendRow, entry.key, kLegendKey, escaped(entry.name));
+    x += width;
+  }
+  return legend;
+}
+
+std::string axes_svg(const Frame2d& frame) {
+  std::string text;
+  for (const double place : ticks(frame.chart.x, 8)) {
+    const double x = frame.x(place);
+    text += fmt::format(
+        "<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\" "
+        "text-anchor=\"middle\">{}</text>\n",
+        x, frame.top, frame.bottom(), x, frame.bottom() + 18.0, tick_text(place));
+  }
+  for (const double place : ticks(frame.chart.y, 6)) {
+    const double y = frame.y(place);
+    text += fmt::format(
+        "<path class=\"grid\" d=\"M{} {:.1f}H{:.1f}\"/><text x=\"{}\" y=\"{:.1f}\" "
+        "text-anchor=\"end\">{}</text>\n",
+        kLeft, y, kWidth - kRight, kLeft - 7.0, y + 4.5, tick_text(place));
+  }
+  text += fmt::format(
+      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
+      "<text transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+      0.5 * (kLeft + kWidth - kRight), frame.bottom() + 40.0, escaped(frame.chart.x.label),
+      frame.top + 0.5 * kPlotHeight, escaped(frame.chart.y.label));
+  return text;
+}
+
+std::string frame_rectangle(const Frame2d& frame) {
+  return fmt::format("x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", kLeft, frame.top,
+                     kWidth - kLeft - kRight, kPlotHeight);
+}
+
+std::string content_svg(const Frame2d& frame) {
+  std::string text;
+  for (const ChartBand& band : frame.chart.bands) text += band_svg(frame, band);
+  for (const ChartLine& line : frame.chart.lines) {
+    text += fmt::format("<path class=\"line {}\" d=\"{}\"/>\n", class_of(line.ink),
+                        line_paths(frame, line.x, line.y));
+  }
+  for (const ChartMarks& marks : frame.chart.marks) text += marks_svg(frame, marks);
+  return text;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += letter;
+    }
+  }
+  return result;
+}
+
+std::string_view chart_style() { return kStyle; }
+
+std::string chart_svg(const Chart& chart, SvgPlace place) {
+  const Legend legend = lay_out(legend_of(chart));
+  const Frame2d frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0};
+  const double height = frame.bottom() + kBottom;
+  std::string text = fmt::format(
+      "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" "
+      "role=\"img\"{}>\n<title>{}</title>\n",
+      kWidth, height,
+      place == SvgPlace::file ? fmt::format(" width=\"{}\" height=\"{:.0f}\"", kWidth, height) : "",
+      escaped(chart.title));
+  if (place == SvgPlace::file) {
+    text += fmt::format(
+        "<style>{}</style>\n<rect width=\"100%\" height=\"100%\" "
+        "style=\"fill: var(--halo)\"/>\n",
+        kStyle);
+  }
+  text += fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
+                      escaped(chart.title));
+  text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);
+  text += axes_svg(frame);
+  text += fmt::format(
+      "<clipPath id=\"clip-{}\"><rect {}/></clipPath>\n<g clip-path=\"url(#clip-{})\">\n{}</g>\n",
+      chart.id, frame_rectangle(frame), chart.id, content_svg(frame));
+  return text + fmt::format("<rect class=\"frame\" {}/>\n</svg>\n", frame_rectangle(frame));
+}
+
+}  // namespace sluice

@@ -1,0 +1,215 @@
+#include "engine/study/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/store/filter.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr std::string_view kTimeLabel = "T = t √(g/h₀)";
+
+std::string id_of(std::string_view kind, std::size_t number) {
+  return fmt::format("{}-{}", kind, number);
+}
+
+ChartLine simulation_line(const Curve& curve) {
+  return {"simulation", Ink::simulation, curve.time, curve.value};
+}
+
+void fit(Chart& chart) {
+  std::vector<double> x, y;
+  const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const ChartLine& line : chart.lines) {
+    add(x, line.x);
+    add(y, line.y);
+  }
+  for (const ChartBand& band : chart.bands) {
+    add(y, band.low);
+    add(y, band.high);
+  }
+  for (const ChartMarks& marks : chart.marks) {
+    add(x, marks.x);
+    add(y, marks.y);
+    add(y, marks.low);
+    add(y, marks.high);
+  }
+  fit_axis(chart.x, x);
+  fit_axis(chart.y, y);
+}
+
+/// The paper's figure 5: X = w/w0.
+Chart front_chart(const Scene& scene, const Evidence& evidence) {
+  const double ratio = scene.scales->height / scene.scales->width;
+  const auto scaled = [&](Curve curve) {
+    for (double& value : curve.value) value = 1.0 + value * ratio;
+    return curve;
+  };
+  const Curve measured = scaled(evidence.reference->front);
+  Chart chart;
+  chart.id = "front";
+  chart.title = "Surge front";
+  chart.x = {std::string(kTimeLabel), 0.0, 3.0};
+  chart.y.label = "X = w/w₀";
+  chart.lines.push_back(simulation_line(scaled(evidence.front->simulated)));
+  chart.marks.push_back({"experiment", Ink::experiment, measured.time, measured.value, {}, {}, {}});
+  fit_axis(chart.y, chart.lines[0].y);
+  return chart;
+}
+
+/// Figures 6 to 9.
+Chart level_chart(const LevelEvidence& level, const Reference& reference, std::size_t number) {
+  Chart chart;
+  chart.id = id_of("level", number);
+  chart.title = fmt::format("Surface level at {}", level.sensor);
+  chart.x.label = kTimeLabel;
+  chart.y.label = "H = h/h₀";
+  chart.lines.push_back(simulation_line(level.simulated));
+  for (const LevelReference& one : reference.levels) {
+    if (one.name != level.reference) continue;
+    const auto times = reference.level_times.centers();
+    chart.marks.push_back({"experiment, mean of the tests",
+                           Ink::experiment,
+                           {times.begin(), times.end()},
+                           one.values,
+                           {},
+                           {},
+                           {}});
+  }
+  fit(chart);
+  return chart;
+}
+
+/// The tests' percentiles of the first peak, drawn where the one test that is shown has its own.
+ChartMarks peak_marks(const PressureReference& sensor, std::span<const double> times) {
+  const auto highest = std::max_element(sensor.values.begin(), sensor.values.end());
+  const auto at = static_cast<std::size_t>(highest - sensor.values.begin());
+  return {"median and 2.5–97.5 % of the peaks of 100 tests",
+          Ink::second,
+          {times[at]},
+          {sensor.peak.median},
+          {sensor.peak.low},
+          {sensor.peak.high},
+          {}};
+}
+
+/// Figures 10 to 13.
+Chart pressure_chart(const PressureEvidence& pressure, const Evidence& evidence,
+                     std::size_t number) {
+  const Reference& reference = *evidence.reference;
+  const auto times = reference.pressure_times.centers();
+  Chart chart;
+  chart.id = id_of("pressure", number);
+  chart.title = fmt::format("Pressure at {}, {:g} mm above the floor", pressure.sensor,
+                            pressure.height * 1e3);
+  chart.x = {std::string(kTimeLabel), 2.0, 8.0};
+  chart.y.label = "P = p/(ρ₀ g h₀)";
+  chart.lines.push_back(simulation_line(pressure.simulated));
+  chart.lines[0].name = fmt::format("simulation, τ = {:g} ms", evidence.tau * 1e3);
+  if (evidence.shift) chart.lines[0].name += fmt::format(", shifted {:+.3f} T", *evidence.shift);
+  for (const PressureReference& one : reference.pressures) {
+    if (one.name != pressure.reference) continue;
+    const std::vector<double> x(times.begin(), times.end());
+    chart.lines.push_back({"experiment, one test", Ink::experiment, x, one.values});
+    if (one.band) chart.bands.push_back({"2.5–97.5 % of tests", x, one.band->low, one.band->high});
+    chart.marks.push_back(peak_marks(one, times));
+  }
+  const Axis x = chart.x;
+  fit(chart);
+  chart.x = x;
+  return chart;
+}
+
+Chart curve_chart(const CurveEvidence& one, const SeriesEvidence& evidence, std::size_t number) {
+  const bool plain = evidence.units == ReferenceUnits::si;
+  Chart chart;
+  chart.id = id_of("curve", number);
+  chart.title = one.sensor;
+  chart.x.label = plain ? "time, s" : std::string(kTimeLabel);
+  chart.y.label = plain ? fmt::format("{}, {}", one.kind, one.unit)
+                        : fmt::format("{}, dimensionless", one.kind);
+  chart.lines.push_back(simulation_line(one.simulated));
+  if (one.expected.time.size() > 60) {
+    chart.lines.push_back({"reference", Ink::experiment, one.expected.time, one.expected.value});
+  } else {
+    chart.marks.push_back(
+        {"reference", Ink::experiment, one.expected.time, one.expected.value, {}, {}, {}});
+  }
+  if (!one.expected.low.empty()) {
+    chart.bands.push_back(
+        {"band of the reference", one.expected.time, one.expected.low, one.expected.high});
+  }
+  fit(chart);
+  return chart;
+}
+
+std::vector<double> column_of(const Series& series, std::size_t column, double tau) {
+  if (series.kind == "pressure" && series.size() > 0) {
+    return gaussian_filter(series, tau, column).value;
+  }
+  std::vector<double> values;
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    values.push_back(series.values[n * series.columns.size() + column]);
+  }
+  return values;
+}
+
+Chart plain_chart(const Series& series, double tau, std::size_t number) {
+  constexpr std::array kInks{Ink::first, Ink::second, Ink::third, Ink::fourth};
+  Chart chart;
+  chart.id = id_of("sensor", number);
+  chart.title = fmt::format("{} ({})", series.name, series.kind);
+  chart.x.label = "time, s";
+  chart.y.label = fmt::format("{}, {}", series.kind, series.columns[0].unit);
+  const bool many = series.columns.size() > 1;
+  for (std::size_t column = 0; column < std::min(series.columns.size(), kInks.size()); ++column) {
+    chart.lines.push_back({many ? series.columns[column].name : "", kInks[column], series.time,
+                           column_of(series, column, tau)});
+  }
+  fit(chart);
+  return chart;
+}
+
+void add_experiment_charts(std::vector<Chart>& charts, std::set<std::string>& drawn,
+                           const Report& report) {
+  const Evidence& evidence = *report.evidence;
+  if (evidence.front) {
+    charts.push_back(front_chart(report.scene, evidence));
+    drawn.insert(evidence.front->sensor);
+  }
+  for (const LevelEvidence& level : evidence.levels) {
+    charts.push_back(level_chart(level, *evidence.reference, charts.size()));
+    drawn.insert(level.sensor);
+  }
+  for (const PressureEvidence& pressure : evidence.pressures) {
+    charts.push_back(pressure_chart(pressure, evidence, charts.size()));
+    drawn.insert(pressure.sensor);
+  }
+}
+
+}  // namespace
+
+std::vector<Chart> report_charts(const Report& report, const std::vector<Series>& series) {
+  std::vector<Chart> charts;
+  std::set<std::string> drawn;
+  if (report.evidence) add_experiment_charts(charts, drawn, report);
+  if (report.series_evidence) {
+    for (const CurveEvidence& one : report.series_evidence->curves) {
+      charts.push_back(curve_chart(one, *report.series_evidence, charts.size()));
+      drawn.insert(one.sensor);
+    }
+  }
+  for (const Series& one : series) {
+    if (one.size() < 2 || one.columns.empty() || drawn.contains(one.name)) continue;
+    charts.push_back(plain_chart(one, report.tau, charts.size()));
+  }
+  return charts;
+}
+
+}  // namespace sluice
