@@ -8,13 +8,14 @@
 #include <memory>
 #include <optional>
 
+#include "cli/adopt_scene.hpp"
 #include "cli/machine.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/reporter.hpp"
 #include "engine/run/run_loop.hpp"
-#include "engine/scene/canonical.hpp"
 #include "engine/store/job_folder.hpp"
+#include "engine/study/report.hpp"
 
 namespace sluice {
 namespace {
@@ -46,21 +47,6 @@ std::string folder_name(const std::string& scene_name) {
   return name.empty() ? "job" : name;
 }
 
-/// The folder holds this very scene, or one that only ends at another time or has another name.
-void adopt_scene(JobFolder& folder, const SceneFile& wanted) {
-  const fs::path path = folder.paths().scene();
-  const Scene present = parse_scene_or_end(folder.scene_text(), path, StabilityCheck::skip);
-  if (identity_text(present) != identity_text(wanted.scene)) {
-    throw CommandEnd(ExitCode::invalid_scene,
-                     fmt::format("{} holds a run of another scene: choose another folder with "
-                                 "--folder, or remove that one",
-                                 folder.paths().root().string()));
-  }
-  if (canonical_text(present) != canonical_text(wanted.scene)) {
-    folder.publish_text(path, wanted.text);
-  }
-}
-
 struct Job {
   JobFolder folder;
   Scene scene;
@@ -80,7 +66,7 @@ Job make_job(const fs::path& scene_path, const std::string& wanted_folder) {
     return {JobFolder::create(root, file.text), std::move(file.scene)};
   }
   JobFolder folder = JobFolder::open(root);
-  adopt_scene(folder, file);
+  adopt_scene(folder, file.text, file.scene);
   return {std::move(folder), std::move(file.scene)};
 }
 
@@ -135,12 +121,36 @@ std::string next_commands(const Job& job, const Outcome& outcome) {
   return text;
 }
 
+/// A report of an earlier, shorter run says nothing about this one.
+void remove_report(const JobPaths& paths) {
+  std::error_code ignored;
+  for (const fs::path& path : {paths.report(), paths.report_markdown(), paths.report_html()}) {
+    fs::remove(path, ignored);
+  }
+}
+
+/// Leaves the report beside the results, for those who only read files. What goes wrong here makes
+/// no run a failure: `sluice report` can make it again.
+void leave_report(const JobPaths& paths, const Outcome& outcome) {
+  if (outcome.exit_code != ExitCode::done) return;
+  // The run is safe: being asked to stop now is no reason to end as if it were not.
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) std::signal(number, SIG_IGN);
+  try {
+    publish_report(paths.root(), paths.root());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sluice: no report: {}; sluice report {} makes it\n", error.what(),
+               paths.root().string());
+  }
+}
+
 void run(const RunArguments& arguments) {
   Job job = find_job(arguments);
+  remove_report(job.folder.paths());
   const ProgressForm form = chosen_form(arguments.progress);
   const auto reporter = make_reporter(form);
   const Outcome outcome =
       run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
+  leave_report(job.folder.paths(), outcome);
   // Stdout belongs to the JSON lines where they are written.
   std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
   // A reader who went away is no error of a run that is safe on disk.

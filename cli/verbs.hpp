@@ -41,6 +41,7 @@ void add_inspect(CLI::App& app);
 void add_sensors(CLI::App& app);
 void add_export(CLI::App& app);
 void add_report(CLI::App& app);
+void add_study(CLI::App& app);
 void add_serve(CLI::App& app);
 void add_submit(CLI::App& app);
 void add_list(CLI::App& app);

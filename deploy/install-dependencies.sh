@@ -18,6 +18,7 @@ build_packages=(
   libxxhash-dev         # checksums of files
   libhwy-dev            # SIMD with run-time dispatch
   libsqlite3-dev        # the service's job rows
+  libpng-dev            # pictures in reports
   libcpp-httplib-dev    # the service's answers
   curl ca-certificates  # quickstart.sh
   sqlite3               # backup.sh

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,9 +29,10 @@ struct JobFileEntry {
 /// compared with them.
 std::vector<JobFileEntry> entries_of(const JobPaths& paths) {
   std::vector<JobFileEntry> entries{
-      {paths.scene(), "scene"},   {job_file_path(paths.root()), "job"},
-      {paths.series(), "series"}, {paths.outcome(), "outcome"},
-      {paths.report(), "report"}, {paths.log(), "log"}};
+      {paths.scene(), "scene"},        {job_file_path(paths.root()), "job"},
+      {paths.series(), "series"},      {paths.outcome(), "outcome"},
+      {paths.report(), "report"},      {paths.report_markdown(), "report"},
+      {paths.report_html(), "report"}, {paths.log(), "log"}};
   for (auto& path : paths.checkpoints()) entries.push_back({std::move(path), "checkpoint"});
   for (auto& path : paths.frame_files()) entries.push_back({std::move(path), "frame"});
   return entries;
@@ -40,12 +42,19 @@ std::string_view type_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".json") return "application/json";
   if (extension == ".jsonl") return "application/x-ndjson";
+  if (extension == ".md") return "text/markdown; charset=utf-8";
+  if (extension == ".html") return "text/html; charset=utf-8";
   return "application/x-hdf5";
 }
 
 Response file_response(const std::filesystem::path& path) {
   Response response;
   response.content_type = type_of(path);
+  if (path.extension() == ".html") {
+    // A report needs no script and no other address, so none gets through.
+    response.headers.emplace_back("Content-Security-Policy",
+                                  "default-src 'none'; style-src 'unsafe-inline'; img-src data:");
+  }
   response.file = path;
   return response;
 }
@@ -63,6 +72,20 @@ std::optional<Json> describe(const JobFileEntry& entry, const std::string& id) {
               {"href", fmt::format("/v1/jobs/{}/files/{}", id, name)}};
 }
 
+constexpr std::array<std::string_view, 3> kReportFormats{"json", "markdown", "html"};
+
+/// The worker writes it when the run is complete.
+Response report_file(const Job& job, const std::filesystem::path& path) {
+  if (std::filesystem::is_regular_file(std::filesystem::symlink_status(path))) {
+    return file_response(path);
+  }
+  throw ApiError(
+      ProblemType::wrong_state,
+      fmt::format("job {} is {} and has no report: its worker writes one when the run is "
+                  "complete; GET /v1/jobs/{}?wait=30 until it is",
+                  job.id, to_string(job.state), job.id));
+}
+
 Json document_in(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return nullptr;
   return stored_json(read_text(path, kLargestReport));
@@ -71,9 +94,14 @@ Json document_in(const std::filesystem::path& path) {
 }  // namespace
 
 Response show_report(ApiContext& context, const RouteRequest& request) {
-  QueryReader(request.http).finish();
+  QueryReader query(request.http);
+  const std::string format = query.word("format", kReportFormats).value_or("json");
+  query.finish();
   const Job job = find_job(context, request.parts[0]);
   const JobPaths paths = context.paths(job.id);
+  if (format != "json") {
+    return report_file(job, format == "html" ? paths.report_html() : paths.report_markdown());
+  }
   const Json outcome = document_in(paths.outcome());
   const Json report = document_in(paths.report());
   if (outcome.is_null() && report.is_null()) {

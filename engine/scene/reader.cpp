@@ -185,6 +185,18 @@ void Reader::numbers(std::string_view key, std::vector<double>& member, const Li
   }
 }
 
+void Reader::any(std::string_view key, json& member, const KeySpec& spec,
+                 std::initializer_list<std::string_view> types) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  if (std::find(types.begin(), types.end(), std::string_view(found->type_name())) != types.end()) {
+    member = *found;
+    return;
+  }
+  problems_.add(at(pointer_, key), fmt::format("is {}; must be of type {}: {}", name_value(*found),
+                                               fmt::join(types, " or "), spec.about));
+}
+
 void Reader::finish() {
   if (!is_object_ || any_key_) return;
   for (const auto& [key, value] : value_.items()) {

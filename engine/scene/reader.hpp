@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -31,6 +32,9 @@ class Reader {
               const NumberSpec& point);
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
                const NumberSpec& each);
+  /// Any value whose type is one of `types`: "object", "array", "string".
+  void any(std::string_view key, nlohmann::json& member, const KeySpec& spec,
+           std::initializer_list<std::string_view> types);
 
   template <class Enum, std::size_t n>
   void word(std::string_view key, const Words<Enum, n>& words, Enum& member, const KeySpec& spec) {

@@ -106,6 +106,15 @@ void SchemaWriter::numbers(std::string_view key, std::vector<double>& /*member*/
   put_list(key, describe_number(each), spec);
 }
 
+void SchemaWriter::any(std::string_view key, nlohmann::json& /*member*/, const KeySpec& spec,
+                       std::initializer_list<std::string_view> types) {
+  json allowed = json::array();
+  for (const std::string_view type : types) allowed.push_back(type);
+  json property = {{"description", about(spec.about, spec.otherwise)}};
+  property["type"] = allowed.size() == 1 ? allowed.front() : allowed;
+  put(key, std::move(property), spec.need);
+}
+
 json SchemaWriter::schema() const {
   if (!branches_.empty()) return {{"oneOf", branches_}};
   json result = {{"type", "object"}, {"properties", properties_}};

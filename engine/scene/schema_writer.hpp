@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -30,6 +31,8 @@ class SchemaWriter {
               const NumberSpec& point);
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
                const NumberSpec& each);
+  void any(std::string_view key, nlohmann::json& member, const KeySpec& spec,
+           std::initializer_list<std::string_view> types);
 
   template <class Enum, std::size_t n>
   void word(std::string_view key, const Words<Enum, n>& words, Enum& member, const KeySpec& spec) {

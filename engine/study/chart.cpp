@@ -31,6 +31,7 @@ constexpr std::string_view kStyle = R"(
 .chart .title { font-weight: 600; }
 .chart .grid { stroke: var(--faint); stroke-width: 1; }
 .chart .frame { stroke: var(--frame); stroke-width: 1; fill: none; }
+.chart .canvas { fill: #f6f8fa; }
 .chart .band { fill: var(--band); fill-opacity: 0.16; }
 .chart .line { fill: none; stroke-width: 1.4; stroke-linejoin: round; }
 .chart .mark { stroke-width: 1.3; fill: none; }

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <set>
+#include <span>
 
 #include "engine/store/filter.hpp"
 
@@ -21,27 +22,36 @@ ChartLine simulation_line(const Curve& curve) {
   return {"simulation", Ink::simulation, curve.time, curve.value};
 }
 
-void fit(Chart& chart) {
-  std::vector<double> x, y;
-  const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  for (const ChartLine& line : chart.lines) {
-    add(x, line.x);
-    add(y, line.y);
+/// Values whose place on the x axis is drawn.
+void add_drawn(std::vector<double>& to, const Axis& axis, const std::vector<double>& x,
+               const std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (x[i] >= axis.low && x[i] <= axis.high) to.push_back(values[i]);
   }
+}
+
+/// The y axis for what the x axis shows.
+void fit_height(Chart& chart) {
+  std::vector<double> y;
+  for (const ChartLine& line : chart.lines) add_drawn(y, chart.x, line.x, line.y);
   for (const ChartBand& band : chart.bands) {
-    add(y, band.low);
-    add(y, band.high);
+    add_drawn(y, chart.x, band.x, band.low);
+    add_drawn(y, chart.x, band.x, band.high);
   }
   for (const ChartMarks& marks : chart.marks) {
-    add(x, marks.x);
-    add(y, marks.y);
-    add(y, marks.low);
-    add(y, marks.high);
+    for (const auto* values : {&marks.y, &marks.low, &marks.high}) {
+      add_drawn(y, chart.x, marks.x, *values);
+    }
   }
-  fit_axis(chart.x, x);
   fit_axis(chart.y, y);
+}
+
+void fit(Chart& chart) {
+  std::vector<double> x;
+  for (const ChartLine& line : chart.lines) x.insert(x.end(), line.x.begin(), line.x.end());
+  for (const ChartMarks& marks : chart.marks) x.insert(x.end(), marks.x.begin(), marks.x.end());
+  fit_axis(chart.x, x);
+  fit_height(chart);
 }
 
 /// The paper's figure 5: X = w/w0.
@@ -59,16 +69,16 @@ Chart front_chart(const Scene& scene, const Evidence& evidence) {
   chart.y.label = "X = w/w₀";
   chart.lines.push_back(simulation_line(scaled(evidence.front->simulated)));
   chart.marks.push_back({"experiment", Ink::experiment, measured.time, measured.value, {}, {}, {}});
-  fit_axis(chart.y, chart.lines[0].y);
+  fit_height(chart);
   return chart;
 }
 
-/// Figures 6 to 9.
+/// Figures 6 to 9: as far as the experiment goes, where the splashes of the rolling wave begin.
 Chart level_chart(const LevelEvidence& level, const Reference& reference, std::size_t number) {
   Chart chart;
   chart.id = id_of("level", number);
   chart.title = fmt::format("Surface level at {}", level.sensor);
-  chart.x.label = kTimeLabel;
+  chart.x = {std::string(kTimeLabel), 0.0, reference.level_times.centers().back() + 0.5};
   chart.y.label = "H = h/h₀";
   chart.lines.push_back(simulation_line(level.simulated));
   for (const LevelReference& one : reference.levels) {
@@ -82,15 +92,17 @@ Chart level_chart(const LevelEvidence& level, const Reference& reference, std::s
                            {},
                            {}});
   }
-  fit(chart);
+  fit_height(chart);
   return chart;
 }
 
 /// The tests' percentiles of the first peak, drawn where the one test that is shown has its own.
 ChartMarks peak_marks(const PressureReference& sensor, std::span<const double> times) {
-  const auto highest = std::max_element(sensor.values.begin(), sensor.values.end());
-  const auto at = static_cast<std::size_t>(highest - sensor.values.begin());
-  return {"median and 2.5–97.5 % of the peaks of 100 tests",
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (kImpactWindow.contains(times[k]) && sensor.values[k] > sensor.values[at]) at = k;
+  }
+  return {"peaks of 100 tests: median, 2.5–97.5 %",
           Ink::second,
           {times[at]},
           {sensor.peak.median},
@@ -111,7 +123,6 @@ Chart pressure_chart(const PressureEvidence& pressure, const Evidence& evidence,
   chart.x = {std::string(kTimeLabel), 2.0, 8.0};
   chart.y.label = "P = p/(ρ₀ g h₀)";
   chart.lines.push_back(simulation_line(pressure.simulated));
-  chart.lines[0].name = fmt::format("simulation, τ = {:g} ms", evidence.tau * 1e3);
   if (evidence.shift) chart.lines[0].name += fmt::format(", shifted {:+.3f} T", *evidence.shift);
   for (const PressureReference& one : reference.pressures) {
     if (one.name != pressure.reference) continue;
@@ -120,9 +131,7 @@ Chart pressure_chart(const PressureEvidence& pressure, const Evidence& evidence,
     if (one.band) chart.bands.push_back({"2.5–97.5 % of tests", x, one.band->low, one.band->high});
     chart.marks.push_back(peak_marks(one, times));
   }
-  const Axis x = chart.x;
-  fit(chart);
-  chart.x = x;
+  fit_height(chart);
   return chart;
 }
 

@@ -47,7 +47,7 @@ std::uint8_t index_of(double pressure, const PictureFrame& how) {
 class Canvas {
  public:
   Canvas(const PictureFrame& how)
-      : scale_(how.width / how.view.size().x()), view_(how.view), radius_(0.6 * how.diameter) {
+      : scale_(how.width / how.view.size().x()), view_(how.view), radius_(0.75 * how.diameter) {
     picture_.width = how.width;
     picture_.height = std::max(1, static_cast<int>(std::lround(scale_ * how.view.size().y())));
     const auto count =

@@ -103,7 +103,7 @@ std::string colour_bar(const Plot& plot, std::size_t number, double high, double
       "<rect x=\"{2:.1f}\" y=\"{3}\" width=\"14\" height=\"{4:.1f}\" "
       "fill=\"url(#colours-{0})\"/>\n",
       number, stops, x, kTop, plot.height());
-  for (const double place : ticks({"", 0.0, high / unit}, 4)) {
+  for (const double place : ticks({"", 0.0, high / unit}, 6)) {
     text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 20.0,
                         kTop + plot.height() * (1.0 - place * unit / high) + 4.5, tick_text(place));
   }
@@ -140,6 +140,9 @@ std::vector<std::string> picture_svgs(const Report& report, const std::vector<Fr
         "role=\"img\">\n<title>Particles at {}, coloured by pressure</title>\n"
         "<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n",
         kWidth, kTop + plot.height() + kBottom, title, kLeft, title);
+    text += fmt::format(
+        "<rect class=\"canvas\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kLeft,
+        kTop, plot.width(), plot.height());
     text += image(plot, frame, scene, high) + axes(plot);
     text += colour_bar(plot, svgs.size(), high, unit, scaled ? "P" : "p, Pa");
     text += fmt::format(

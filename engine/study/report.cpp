@@ -42,12 +42,6 @@ SensorSummary summarise(const Series& series, std::size_t column, double tau) {
   return summary;
 }
 
-/// A broken outcome.json is no reason to refuse the figures.
-nlohmann::ordered_json read_outcome(const JobPaths& paths) {
-  if (!std::filesystem::exists(paths.outcome())) return nullptr;
-  return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes), nullptr, false);
-}
-
 /// What the scene is compared with: the reference it names, else an experiment of its shape.
 const Reference* experiment_of(const Scene& scene) {
   if (!scene.reference) return matching_reference(scene);
@@ -103,6 +97,19 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
   return report;
 }
 
+nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
+  const JobPaths paths(folder);
+  if (!std::filesystem::exists(paths.outcome())) return nullptr;
+  return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes), nullptr, false);
+}
+
+Scene read_job_scene(const std::filesystem::path& folder) {
+  ParseResult parsed =
+      parse_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes), StabilityCheck::skip);
+  if (!parsed.scene) throw SceneError(parsed.problems.front());
+  return *std::move(parsed.scene);
+}
+
 JobRecord read_job(const std::filesystem::path& folder) {
   const JobPaths paths(folder);
   if (!JobFolder::holds_job(folder)) {
@@ -110,11 +117,9 @@ JobRecord read_job(const std::filesystem::path& folder) {
         StorageFault::not_ours,
         fmt::format("{}: holds no job; name a folder that `sluice run` made", folder.string()));
   }
-  ParseResult parsed =
-      parse_scene(read_text(paths.scene(), kMaxTextBytes), StabilityCheck::skip);
-  if (!parsed.scene) throw SceneError(parsed.problems.front());
-  std::vector<Series> series = read_series_of(paths, *parsed.scene);
-  return {*std::move(parsed.scene), std::move(series), read_outcome(paths)};
+  Scene scene = read_job_scene(folder);
+  std::vector<Series> series = read_series_of(paths, scene);
+  return {std::move(scene), std::move(series), read_outcome(folder)};
 }
 
 Report report_of_folder(const std::filesystem::path& folder, double tau) {

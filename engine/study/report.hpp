@@ -56,6 +56,10 @@ struct JobRecord {
   nlohmann::ordered_json outcome;
 };
 
+/// outcome.json; null where there is none, discarded where it cannot be read as JSON.
+[[nodiscard]] nlohmann::ordered_json read_outcome(const std::filesystem::path& folder);
+/// Throws SceneError for a scene that cannot be read.
+[[nodiscard]] Scene read_job_scene(const std::filesystem::path& folder);
 /// Throws StorageError when the folder holds no job or its series cannot be read or are not there
 /// yet, and SceneError for a scene that cannot.
 [[nodiscard]] JobRecord read_job(const std::filesystem::path& folder);

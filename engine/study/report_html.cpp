@@ -34,7 +34,8 @@ th, td { padding: .2rem .75rem .2rem 0; border-bottom: 1px solid var(--rule); te
 thead th { font-weight: 600; white-space: nowrap; }
 tbody th { font-weight: 400; }
 .n { text-align: right; white-space: nowrap; }
-td { overflow-wrap: anywhere; }
+td, tbody th { min-width: 5.5rem; }
+.n { min-width: 0; }
 @media print { .charts { grid-template-columns: 1fr 1fr; } figure { break-inside: avoid; } }
 )";
 

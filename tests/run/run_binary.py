@@ -108,7 +108,7 @@ class Sandbox(unittest.TestCase):
     def assert_tidy(self, folder):
         """Every file is one of ours and every HDF5 file is whole."""
         root = self.folder / folder
-        known = re.compile(r"scene\.json|lock|log\.jsonl|series\.h5|outcome\.json|frames"
+        known = re.compile(r"scene\.json|lock|log\.jsonl|series\.h5|outcome\.json|frames|report\.(json|md|html)"
                            r"|checkpoint-\d{12}\.h5")
         for path in root.iterdir():
             self.assertRegex(path.name, known)

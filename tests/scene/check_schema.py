@@ -40,6 +40,12 @@ def main() -> int:
             if valid != (not errors):
                 print(f"{path}: {'refused: ' + errors[0] if errors else 'accepted'}")
                 failures += 1
+    study = json.loads((root / "schemas/study.schema.json").read_text())
+    Draft202012Validator.check_schema(study)
+    for path in sorted((root / "schemas/examples").glob("study-*.json")):
+        for error in Draft202012Validator(study).iter_errors(json.loads(path.read_text())):
+            print(f"{path}: refused: {error.json_path}: {error.message[:200]}")
+            failures += 1
     print(f"{failures} failures")
     return 1 if failures else 0
 

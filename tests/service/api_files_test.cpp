@@ -50,6 +50,31 @@ TEST(ApiFiles, TheReportIsThereOnceAnAttemptHasEnded) {
   EXPECT_TRUE(report["report"].is_null());
 }
 
+TEST(ApiFiles, ThePageOfAReportComesWithAPolicyThatLetsNoScriptRun) {
+  Service service;
+  const std::string id = service.submit();
+  const std::string target = "/v1/jobs/" + id + "/report?format=html";
+  expect_problem(service.get(target), 409, "wrong-state");
+  write_file(service.data.job(id) / "report.html", "<!DOCTYPE html>");
+  const Response page = service.get(target);
+  EXPECT_EQ(page.file, service.data.job(id) / "report.html");
+  EXPECT_EQ(page.content_type, "text/html; charset=utf-8");
+  bool policy = false;
+  for (const auto& [name, value] : page.headers) {
+    policy = policy || (name == "Content-Security-Policy" &&
+                        value.find("default-src 'none'") != std::string::npos);
+  }
+  EXPECT_TRUE(policy);
+  expect_problem(service.get("/v1/jobs/" + id + "/report?format=pdf"), 400, "invalid-parameter");
+}
+
+TEST(ApiFiles, AReportThatIsALinkIsNotSent) {
+  Service service;
+  const std::string id = service.submit();
+  std::filesystem::create_symlink("/etc/hostname", service.data.job(id) / "report.html");
+  expect_problem(service.get("/v1/jobs/" + id + "/report?format=html"), 409, "wrong-state");
+}
+
 TEST(ApiFiles, TheLogIsEmptyBeforeItBegins) {
   Service service;
   const std::string id = service.submit();

@@ -216,7 +216,8 @@ def walk_ended_job(walk, server, done):
     last = re.findall(rb"id: (\d+)", events.body)[-1].decode()
     walk.ask(server, "GET", job + "/events", headers={"Last-Event-ID": last})
     walk.ask(server, "GET", job + "/sensors")
-    walk.ask(server, "GET", job + "/report")
+    for query in ("", "?format=json", "?format=markdown", "?format=html", "?format=pdf"):
+        walk.ask(server, "GET", job + "/report" + query)
     sensor = job + "/sensors/P1"
     for query in ("", "?filter=gaussian&tau=0.01&from=0.1&to=0.5&max_points=50", "?format=csv",
                   "?dimensionless=1", "?filter=gaussian&tau=100000"):

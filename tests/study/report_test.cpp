@@ -75,6 +75,114 @@ TEST(Report, SurvivesAnOutcomeOfAnotherLayout) {
   }
 }
 
+nlohmann::ordered_json outcome_of(double steps_of_attempt, double core_seconds) {
+  nlohmann::ordered_json outcome{{"state", "completed"}, {"step", 400}, {"particles", 90}};
+  outcome["retired"] = {{"overtopped", 9}, {"leaked", 1}};
+  outcome["threads"] = 2;
+  outcome["this_attempt"] = {
+      {"seconds", 7.0}, {"steps", steps_of_attempt}, {"core_seconds", core_seconds}};
+  return outcome;
+}
+
+TEST(Report, CountsTheCoreSecondsOfAWholeRun) {
+  const RunFacts facts = run_facts(outcome_of(400, 12.0));
+  EXPECT_DOUBLE_EQ(*facts.core_seconds, 12.0);
+  EXPECT_FALSE(facts.core_seconds_scaled);
+}
+
+TEST(Report, ScalesTheLastAttemptsCostToAllStepsAndSaysSo) {
+  const RunFacts facts = run_facts(outcome_of(100, 3.0));
+  EXPECT_DOUBLE_EQ(*facts.core_seconds, 12.0);
+  EXPECT_TRUE(facts.core_seconds_scaled);
+}
+
+TEST(Report, HasNoCostWhereTheLastAttemptDidNoStep) {
+  EXPECT_FALSE(run_facts(outcome_of(0, 0.1)).core_seconds);
+}
+
+TEST(Report, TakesWallTimeTimesThreadsOfAnOutcomeWithoutProcessorTime) {
+  auto outcome = outcome_of(400, 0.0);
+  outcome["this_attempt"].erase("core_seconds");
+  EXPECT_DOUBLE_EQ(*run_facts(outcome).core_seconds, 14.0);
+}
+
+TEST(Report, TellsWhatShareOfTheMassLeft) {
+  const Report report = make_report(scene_of_no_experiment(), {}, outcome_of(400, 12.0));
+  EXPECT_DOUBLE_EQ(*report.conservation.lost_mass, 0.1);
+}
+
+TEST(Report, SumsTheKindsOfEnergy) {
+  Series energy;
+  energy.name = "energy";
+  energy.kind = "energy";
+  energy.columns = {{"kinetic", "J/m"}, {"potential", "J/m"}};
+  energy.time = {0.0, 1.0, 2.0};
+  energy.duration = {0.0, 1.0, 1.0};
+  energy.values = {0.0, 10.0, 7.0, 5.0, 3.0, 4.0};
+  energy.weight = {1.0, 1.0, 1.0};
+  const Conservation kept = conservation_of({energy}, {});
+  EXPECT_DOUBLE_EQ(*kept.first_energy, 10.0);
+  EXPECT_DOUBLE_EQ(*kept.highest_energy, 12.0);
+  EXPECT_DOUBLE_EQ(*kept.last_energy, 7.0);
+}
+
+TEST(Report, AsAPageRunsNoScriptAndLoadsNothing) {
+  Scene scene = scene_of_no_experiment();
+  scene.description = "<script>alert(1)</script> & <img src=x>";
+  const Report report = make_report(scene, {probe()}, outcome_of(400, 12.0));
+  const std::string page = report_html(report, {probe()}, {});
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_NE(page.find("&lt;script&gt;"), std::string::npos);
+  EXPECT_EQ(page.find("src="), page.find("src=x&gt;")) << "nothing is fetched";
+  EXPECT_EQ(page.find("url(http"), std::string::npos);
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+}
+
+TEST(Report, AsMarkdownLeavesNoTableOpenToATextOfTheUser) {
+  Scene scene = scene_of_no_experiment();
+  scene.description = "a | b <b> [link](x)";
+  const std::string text = report_markdown(make_report(scene, {probe()}, nullptr));
+  EXPECT_NE(text.find("a \\| b \\<b> \\[link](x)"), std::string::npos);
+}
+
+SceneReference straight_line() {
+  SceneReference reference;
+  reference.kind = ReferenceKind::series;
+  reference.title = "half of it";
+  reference.curves = {{"probe", {1.0, 2.0, 3.0}, {0.5, 0.5, 0.5}, {}, {}}};
+  return reference;
+}
+
+/// A level of 1 m all the time against 0.5 m: the error is as large as the reference.
+TEST(Report, ComparesASensorWithTheCurveThatItsSceneGives) {
+  Scene scene = scene_of_no_experiment();
+  scene.reference = straight_line();
+  Series level = probe();
+  level.time = {0.0, 1.0, 2.0, 4.0};
+  level.values = {1.0, 1.0, 1.0, 1.0};
+  const Report report = make_report(scene, {level}, nullptr);
+  ASSERT_TRUE(report.series_evidence);
+  const CurveEvidence& curve = report.series_evidence->curves.at(0);
+  EXPECT_NEAR(*curve.relative_l2, 1.0, 1e-12);
+  EXPECT_NEAR(*curve.rms_difference, 0.5, 1e-12);
+  EXPECT_NEAR(*report.error(), 1.0, 1e-12);
+}
+
+TEST(Report, HasNoErrorWhereTheRunEndsBeforeItsReference) {
+  Scene scene = scene_of_no_experiment();
+  scene.reference = straight_line();
+  EXPECT_FALSE(make_report(scene, {probe()}, nullptr).error());
+}
+
+TEST(Report, HasNoErrorForASensorWithoutSamples) {
+  Scene scene = scene_of_no_experiment();
+  scene.reference = straight_line();
+  const Report report = make_report(scene, {}, nullptr);
+  EXPECT_FALSE(report.error());
+  EXPECT_FALSE(report_html(report, {}, {}).empty());
+}
+
 TEST(Report, OfAFolderWithoutAJobSaysWhatToName) {
   const std::filesystem::path empty = std::filesystem::temp_directory_path() / "sluice-no-such-job";
   try {

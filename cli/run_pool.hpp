@@ -1,0 +1,46 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace sluice {
+
+/// Child processes that each run a job: `sluice run FOLDER`, this very program. While it lives,
+/// SIGTERM, SIGINT, SIGHUP and SIGCHLD are blocked and only seen by wait(). When the process dies,
+/// however it does, its runs write a checkpoint and stop.
+class RunPool {
+ public:
+  RunPool();
+  /// Asks what still runs to stop, and waits for it.
+  ~RunPool();
+  RunPool(const RunPool&) = delete;
+  RunPool& operator=(const RunPool&) = delete;
+
+  /// Starts a run; what it prints goes to `log`. Throws std::runtime_error when the system refuses.
+  void start(std::size_t number, const std::filesystem::path& folder,
+             const std::filesystem::path& log, int threads);
+  [[nodiscard]] std::size_t running() const { return runs_.size(); }
+
+  struct Ended {
+    std::size_t number;
+    int exit_code;  ///< 128 + the signal's number for one that was killed
+  };
+  /// Waits for a run to end, or for a stop to be asked: then it holds no value.
+  [[nodiscard]] std::optional<Ended> wait();
+  /// Passes a stop on: the runs write a checkpoint and end; a second time they end at once.
+  void stop_all() const;
+
+ private:
+  std::optional<Ended> reap();
+
+  std::map<pid_t, std::size_t> runs_;
+  sigset_t watched_{};
+  sigset_t before_{};
+};
+
+}  // namespace sluice

@@ -1,0 +1,227 @@
+#include "engine/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "cli/adopt_scene.hpp"
+#include "cli/run_pool.hpp"
+#include "cli/verbs.hpp"
+#include "engine/store/errors.hpp"
+#include "engine/store/job_folder.hpp"
+#include "engine/store/publish.hpp"
+#include "engine/study/study_output.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudyArguments {
+  fs::path file;
+  fs::path folder;
+  int cores = 0;
+  std::vector<double> below;
+  bool json = false;
+  bool no_run = false;
+};
+
+std::string load_scene(const std::string& name, const void* context) {
+  const auto& beside = *static_cast<const fs::path*>(context);
+  return read_text(beside / name, kMaxSceneBytes + 1);
+}
+
+StudyPlan read_study(const fs::path& file) {
+  const fs::path beside = file.parent_path();
+  StudyPlan plan = plan_study(read_text(file, kMaxSceneBytes + 1), &load_scene, &beside);
+  if (plan.problems.empty()) return plan;
+  for (const Problem& problem : plan.problems) {
+    fmt::print(stderr, "{}: {}: {}\n", file.string(),
+               problem.pointer.empty() ? "(the whole study)" : problem.pointer, problem.message);
+  }
+  const std::size_t count = plan.problems.size();
+  throw CommandEnd(ExitCode::invalid_scene,
+                   fmt::format("{} is no valid study: {} problem{}", file.string(), count,
+                               count == 1 ? "" : "s"));
+}
+
+/// The folder of a study: study.json, runs/NAME with a log beside each, and the results.
+class StudyFolder {
+ public:
+  explicit StudyFolder(fs::path root) : root_(std::move(root)) {}
+
+  [[nodiscard]] fs::path run(const StudyRun& run) const { return root_ / "runs" / run.name; }
+  [[nodiscard]] fs::path log(const StudyRun& run) const {
+    return root_ / "runs" / (run.name + ".log");
+  }
+  [[nodiscard]] fs::path lock() const { return root_ / "lock"; }
+
+  void make() const {
+    std::error_code error;
+    fs::create_directories(root_ / "runs", error);
+    if (error) {
+      throw CommandEnd(ExitCode::storage_failure,
+                       fmt::format("cannot make {}: {}; name another folder with --folder",
+                                   (root_ / "runs").string(), error.message()));
+    }
+  }
+
+  [[nodiscard]] StudyResult read(const StudyPlan& plan) const {
+    std::vector<StudyRow> rows;
+    for (const StudyRun& one : plan.runs) rows.push_back(read_row(run(one), one));
+    return evaluate(plan.study, plan.runs, std::move(rows));
+  }
+
+  void publish(const StudyResult& result) const {
+    publish_text(root_ / "results.md", study_markdown(result));
+    publish_text(root_ / "results.csv", study_csv(result));
+    publish_text(root_ / "results.json", study_json(result).dump(2) + "\n");
+    publish_text(root_ / "error-cost.svg", chart_svg(study_chart(result), SvgPlace::file));
+  }
+
+ private:
+  fs::path root_;
+};
+
+/// Runs what is not done yet, several at once, and says how each ended.
+class StudyRunner {
+ public:
+  StudyRunner(const StudyPlan& plan, const StudyFolder& folder, int cores)
+      : plan_(plan),
+        folder_(folder),
+        at_once_(static_cast<std::size_t>(std::max(1, cores / plan.study.threads))) {}
+
+  /// False when it was asked to stop before the end.
+  bool run_all() {
+    std::vector<std::size_t> open = open_runs();
+    std::size_t next = 0;
+    while (next < open.size() || pool_.running() > 0) {
+      while (!stopping_ && next < open.size() && pool_.running() < at_once_) start(open[next++]);
+      if (pool_.running() == 0) break;
+      if (const auto ended = pool_.wait()) {
+        tell(ended->number);
+      } else {
+        stop();
+      }
+    }
+    return !stopping_;
+  }
+
+ private:
+  /// All but what is completed and what failed by its own numbers, which would fail again.
+  std::vector<std::size_t> open_runs() {
+    std::vector<std::size_t> open;
+    for (std::size_t k = 0; k < plan_.runs.size(); ++k) {
+      const RunState state = read_row(folder_.run(plan_.runs[k]), plan_.runs[k]).state;
+      if (state == RunState::completed || state == RunState::failed) {
+        ++done_;
+      } else {
+        open.push_back(k);
+      }
+    }
+    if (done_ > 0) say(fmt::format("{} of {} runs are done already", done_, plan_.runs.size()));
+    return open;
+  }
+
+  void start(std::size_t number) {
+    const StudyRun& run = plan_.runs[number];
+    prepare_folder(folder_.run(run), run.scene_text, run.scene);
+    pool_.start(number, folder_.run(run), folder_.log(run), plan_.study.threads);
+  }
+
+  void tell(std::size_t number) {
+    const StudyRun& run = plan_.runs[number];
+    const StudyRow row = read_row(folder_.run(run), run);
+    std::string text =
+        fmt::format("[{}/{}] {}: {}", ++done_, plan_.runs.size(), run.name, to_string(row.state));
+    if (row.error) text += fmt::format(", error {:.4f}", *row.error);
+    if (row.core_seconds) text += fmt::format(", {:.4g} core-seconds", *row.core_seconds);
+    if (!row.reason.empty()) text += ": " + row.reason;
+    say(text);
+  }
+
+  void stop() {
+    if (!stopping_) say("stopping: what runs writes a checkpoint; run the study again to go on");
+    stopping_ = true;
+    pool_.stop_all();
+  }
+
+  static void say(const std::string& text) {
+    fmt::print(stderr, "{}\n", text);
+    std::fflush(stderr);
+  }
+
+  const StudyPlan& plan_;
+  const StudyFolder& folder_;
+  std::size_t at_once_;
+  std::size_t done_ = 0;
+  bool stopping_ = false;
+  RunPool pool_;
+};
+
+void end_unless_complete(const StudyResult& result, const fs::path& folder) {
+  const auto open = std::count_if(result.rows.begin(), result.rows.end(), [](const StudyRow& row) {
+    return row.state == RunState::waiting || row.state == RunState::stopped;
+  });
+  if (open == 0) return;
+  throw CommandEnd(ExitCode::storage_failure,
+                   fmt::format("{} of {} runs did not end: see the logs in {}", open,
+                               result.rows.size(), (folder / "runs").string()));
+}
+
+void study(const StudyArguments& arguments) {
+  StudyPlan plan = read_study(arguments.file);
+  plan.study.targets.insert(plan.study.targets.end(), arguments.below.begin(),
+                            arguments.below.end());
+  const fs::path root = arguments.folder.empty() ? fs::path(plan.study.name) : arguments.folder;
+  const StudyFolder folder(root);
+  folder.make();
+  const FolderLock lock(folder.lock());
+  bool finished = true;
+  if (!arguments.no_run) {
+    publish_text(root / "study.json", read_text(arguments.file, kMaxSceneBytes + 1));
+    const int cores = arguments.cores > 0
+                          ? arguments.cores
+                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    finished = StudyRunner(plan, folder, cores).run_all();
+  }
+  const StudyResult result = folder.read(plan);
+  folder.publish(result);
+  const std::string text = arguments.json ? study_json(result).dump(2) + "\n" : study_text(result);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  if (!finished) throw CommandEnd(ExitCode::checkpointed);
+  if (!arguments.no_run) end_unless_complete(result, root);
+}
+
+}  // namespace
+
+void add_study(CLI::App& app) {
+  const auto arguments = std::make_shared<StudyArguments>();
+  CLI::App* verb = app.add_subcommand(
+      "study", "Run a scene with its keys varied, and compare error and cost of all runs");
+  verb->add_option("study", arguments->file, "The study (JSON; schemas/study.schema.json)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  verb->add_option("--folder", arguments->folder,
+                   "Where its runs and results go, and where it goes on; by default the study's "
+                   "name in this folder");
+  verb->add_option("--cores", arguments->cores, "Cores to use; by default all")
+      ->check(CLI::Range(1, 1024));
+  verb->add_option("--below", arguments->below,
+                   "An error for which the cheapest set-up is sought, beside the study's targets")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--json", arguments->json, "Print JSON for programs");
+  verb->add_flag("--no-run", arguments->no_run, "Only put together what is there");
+  verb->footer(
+      "The folder then holds results.md, results.csv, results.json and error-cost.svg. Stop it "
+      "with\nCtrl-C (exit 85); the same command goes on.\nExample: sluice study "
+      "schemas/examples/study-quick.json --folder first-study");
+  verb->callback([arguments] { study(*arguments); });
+}
+
+}  // namespace sluice

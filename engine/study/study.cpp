@@ -1,0 +1,264 @@
+#include "engine/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "engine/scene/json_text.hpp"
+#include "engine/scene/reader.hpp"
+#include "engine/scene/schema_writer.hpp"
+
+namespace sluice {
+
+using nlohmann::json;
+
+template <class Archive>
+void describe(Archive& a, StudyCase& one) {
+  a.text("name", one.name,
+         {.about = "name of the case", .min = 1, .max = 32, .need = Need::required});
+  a.any("set", one.set,
+        {.about = "what it changes in the base scene: JSON pointers and their new values, such as "
+                  "\"/numerics/courant\": 1; null leaves a key out"},
+        {"object"});
+}
+
+template <class Archive>
+void describe(Archive& a, StudyAxis& axis) {
+  a.text("key", axis.key,
+         {.about = "JSON pointer of a key of the scene, such as /resolution/spacing",
+          .characters = Characters::sentence,
+          .min = 2,
+          .max = 200,
+          .need = Need::required});
+  a.any("values", axis.values, {.about = "the values it takes", .need = Need::required}, {"array"});
+}
+
+template <class Archive>
+void describe(Archive& a, StudyRepeats& repeats) {
+  a.integer("count", repeats.count,
+            {.about = "runs of each set-up", .range = from(1, 100), .need = Need::required});
+  a.number("jitter", repeats.jitter,
+           {.about = "largest displacement of a particle at the start, in spacings; each run has "
+                     "its own seed",
+            .range = above(0, 0.5)});
+}
+
+template <class Archive>
+void describe(Archive& a, Study& study) {
+  a.text("name", study.name,
+         {.about = "name of the study", .min = 1, .max = 32, .need = Need::required});
+  a.text("description", study.description,
+         {.about = "what it is for", .characters = Characters::sentence, .max = 2000});
+  a.any("scene", study.scene,
+        {.about = "the base: a scene, or the name of a scene's file, from the study's folder",
+         .need = Need::required},
+        {"object", "string"});
+  a.list("cases", study.cases, {.about = "named changes of the base; none: the base", .max = 200});
+  a.list(
+      "vary", study.vary,
+      {.about = "keys that every case is run with each value of; several make a grid", .max = 6});
+  a.section("repeats", study.repeats,
+            {.about = "an ensemble of each set-up", .otherwise = "one run of each"});
+  a.integer("threads", study.threads, {.about = "threads of each run", .range = from(1, 1024)});
+  a.numbers("targets", study.targets,
+            {.about = "errors for which the cheapest set-up is sought", .max = 20},
+            {.about = "relative error", .range = above(0, 1e6)});
+}
+
+namespace {
+
+std::string word_of(const json& value) {
+  return value.is_string() ? value.get<std::string>() : excerpt(value);
+}
+
+std::string last_token(const std::string& pointer) {
+  return pointer.substr(pointer.rfind('/') + 1);
+}
+
+/// Letters, digits, _ . - as names of scenes and folders allow; at most 64 of them.
+std::string plain_name(const std::string& text) {
+  constexpr std::size_t kLongest = 64;
+  std::string name;
+  for (const char letter : text) {
+    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                       (letter >= '0' && letter <= '9') || letter == '_' || letter == '-' ||
+                       (letter == '.' && !name.empty());
+    if (plain) {
+      name += letter;
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  while (!name.empty() && name.back() == '-') name.pop_back();
+  return name.substr(0, kLongest);
+}
+
+/// Puts a value at a pointer, or takes the key away for null. Throws json::exception and
+/// std::invalid_argument where the pointer leads nowhere.
+void apply(json& scene, const std::string& key, const json& value) {
+  const json::json_pointer place(key);
+  if (place.empty()) throw std::invalid_argument("the whole scene cannot be replaced");
+  if (!value.is_null()) {
+    scene[place] = value;
+    return;
+  }
+  if (!scene.contains(place)) return;
+  json& parent = scene[place.parent_pointer()];
+  if (!parent.is_object()) throw std::invalid_argument("only a key of an object can be left out");
+  parent.erase(place.back());
+}
+
+/// Makes the runs of a study whose own keys are in order.
+class Planner {
+ public:
+  Planner(StudyPlan& plan, Problems& problems, json base)
+      : plan_(plan), problems_(problems), base_(std::move(base)) {}
+
+  void make_all() {
+    std::vector<StudyCase> cases = plan_.study.cases;
+    if (cases.empty()) cases.push_back({plan_.study.name, json::object()});
+    for (std::size_t k = 0; k < cases.size() && !full_; ++k) {
+      json scene = base_;
+      StudyRun run;
+      run.of_case = cases[k].name;
+      run.setup = cases[k].name;
+      for (const auto& [key, value] : cases[k].set.items()) {
+        change(scene, key, value, at(at(at("/cases", k), "set"), key));
+      }
+      walk(scene, run, 0);
+    }
+  }
+
+ private:
+  void change(json& scene, const std::string& key, const json& value, const std::string& pointer) {
+    try {
+      apply(scene, key, value);
+    } catch (const std::exception& error) {
+      problems_.add(pointer, fmt::format("cannot set {} in the scene: {}", key, error.what()));
+    }
+  }
+
+  /// The grid, axis by axis.
+  void walk(const json& scene, const StudyRun& run, std::size_t axis) {
+    if (axis == plan_.study.vary.size()) return repeat(scene, run);
+    const StudyAxis& varied = plan_.study.vary[axis];
+    for (std::size_t k = 0; k < varied.values.size() && !full_; ++k) {
+      const json& value = varied.values[k];
+      json changed = scene;
+      change(changed, varied.key, value, at(at(at("/vary", axis), "values"), k));
+      StudyRun next = run;
+      next.setup += fmt::format("-{}-{}", last_token(varied.key), word_of(value));
+      next.values.emplace_back(varied.key, word_of(value));
+      walk(changed, next, axis + 1);
+    }
+  }
+
+  void repeat(const json& scene, const StudyRun& run) {
+    if (!plan_.study.repeats) return finish(scene, run, "");
+    for (int k = 1; k <= plan_.study.repeats->count && !full_; ++k) {
+      json displaced = scene;
+      displaced["jitter"] = {{"amplitude", plan_.study.repeats->jitter}, {"seed", k}};
+      finish(displaced, run, fmt::format("-r{}", k));
+    }
+  }
+
+  void finish(json scene, StudyRun run, const std::string& suffix) {
+    if (plan_.runs.size() == kMaxStudyRuns) {
+      problems_.add("", fmt::format("makes more than {} runs; study less at once", kMaxStudyRuns));
+      full_ = true;
+      return;
+    }
+    run.setup = plain_name(run.setup);
+    run.name = plain_name(run.setup + suffix);
+    if (!names_.insert(run.name).second) {
+      problems_.add("", fmt::format("makes two runs of the name {}: give the cases other names, or "
+                                    "name each value once",
+                                    run.name));
+    }
+    scene["name"] = run.name;
+    run.scene_text = scene.dump(2) + "\n";
+    ParseResult parsed = parse_scene(run.scene_text, StabilityCheck::skip);
+    for (const Problem& problem : parsed.problems) {
+      problems_.add("", fmt::format("run {}: {}: {}", run.name, problem.pointer, problem.message));
+    }
+    if (!parsed.scene) return;
+    run.scene = *std::move(parsed.scene);
+    plan_.runs.push_back(std::move(run));
+  }
+
+  StudyPlan& plan_;
+  Problems& problems_;
+  json base_;
+  std::set<std::string> names_;
+  bool full_ = false;
+};
+
+void check_values(const Study& study, Problems& problems) {
+  for (std::size_t k = 0; k < study.vary.size(); ++k) {
+    if (study.vary[k].values.empty()) {
+      problems.add(at(at("/vary", k), "values"), "is empty; must hold at least one value");
+    }
+  }
+}
+
+/// The base scene as JSON, from the study or from its file.
+std::optional<json> base_scene(const Study& study, SceneLoader load, const void* context,
+                               Problems& problems) {
+  if (study.scene.is_object()) return study.scene;
+  const std::string name = study.scene.get<std::string>();
+  if (load == nullptr) {
+    problems.add("/scene", "names a file; must be the scene itself here");
+    return std::nullopt;
+  }
+  try {
+    Problems inner;
+    auto scene = read_json(load(name, context), inner);
+    for (const Problem& problem : inner.take()) {
+      problems.add("/scene", fmt::format("{}: {}: {}", name, problem.pointer, problem.message));
+    }
+    if (scene && scene->is_object()) return scene;
+    problems.add("/scene", fmt::format("{} holds no scene", name));
+  } catch (const std::runtime_error& error) {
+    problems.add("/scene", error.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context) {
+  StudyPlan plan;
+  Problems problems;
+  if (const auto document = read_json(text, problems)) {
+    Reader reader(*document, "", problems);
+    describe(reader, plan.study);
+    reader.finish();
+    check_values(plan.study, problems);
+    if (problems.empty()) {
+      if (auto base = base_scene(plan.study, load, context, problems)) {
+        Planner(plan, problems, *std::move(base)).make_all();
+      }
+    }
+  }
+  plan.problems = problems.take();
+  if (!plan.problems.empty()) plan.runs.clear();
+  return plan;
+}
+
+std::string study_schema_text() {
+  Study fresh;
+  SchemaWriter writer;
+  describe(writer, fresh);
+  SchemaWriter::json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"$id", "urn:sluice:study:1"},
+      {"title", "Sluice study"},
+      {"description",
+       "Runs of one scene with some of its keys changed, compared by their error and "
+       "their cost."}};
+  schema.update(writer.schema());
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace sluice
