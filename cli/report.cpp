@@ -100,7 +100,9 @@ void add_report(CLI::App& app) {
       "--output", arguments->output,
       "Also write report.txt, report.json, report.md and report.html into this folder");
   add_service_switch(*verb, arguments->service, arguments->of_service);
-  verb->footer("Example: sluice report dambreak-paper --format html > dambreak-paper.html");
+  verb->footer(
+      "Example: sluice report dambreak-paper --format html > dambreak-paper.html\n"
+      "         sluice report j0r2mt1q8kq0f7a3c1d2e --server http://127.0.0.1:8080");
   verb->callback([arguments] { report(*arguments); });
 }
 

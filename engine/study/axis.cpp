@@ -19,15 +19,18 @@ double nice_step(double span, int wanted) {
 }
 
 std::vector<double> logarithmic_ticks(const Axis& axis) {
-  const bool few = axis.high / axis.low < 300.0;
+  const double span = axis.high / axis.low;
   std::vector<double> places;
   const int first = static_cast<int>(std::floor(std::log10(axis.low)));
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   for (int power = first; power <= last; ++power) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
+    for (const double factor : {1.0, 2.0, 3.0, 4.0, 5.0, 7.0}) {
+      // The wider the axis, the fewer stand between two powers of ten.
+      const bool wanted =
+          factor == 1.0 || (span < 300.0 && (factor == 2.0 || factor == 5.0)) || span < 12.0;
       const double place = factor * std::pow(10.0, power);
       const bool inside = place >= axis.low * (1 - 1e-9) && place <= axis.high * (1 + 1e-9);
-      if (inside && (few || factor == 1.0)) places.push_back(place);
+      if (inside && wanted) places.push_back(place);
     }
   }
   return places;

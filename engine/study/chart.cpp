@@ -170,7 +170,7 @@ std::string marks_svg(const Frame2d& frame, const ChartMarks& marks) {
     if (!drawn) continue;
     const double x = frame.x(marks.x[i]);
     const double y = tame(frame.y(marks.y[i]));
-    if (!marks.low.empty() && marks.high[i] > marks.low[i]) {
+    if (i < marks.low.size() && marks.high[i] > marks.low[i]) {
       text += bar_svg(marks.ink, x, tame(frame.y(marks.low[i])), tame(frame.y(marks.high[i])));
     }
     text += mark_svg(marks.ink, x, y);
@@ -262,6 +262,16 @@ std::string axes_svg(const Frame2d& frame) {
   return text;
 }
 
+std::string notes_svg(const Frame2d& frame) {
+  std::string text;
+  double y = frame.bottom() + kBottom + 10.0;
+  for (const std::string& note : frame.chart.notes) {
+    text += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft, y, escaped(note));
+    y += kLegendRow;
+  }
+  return text;
+}
+
 std::string frame_rectangle(const Frame2d& frame) {
   return fmt::format("x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", kLeft, frame.top,
                      kWidth - kLeft - kRight, kPlotHeight);
@@ -308,7 +318,8 @@ std::string_view chart_style() { return kStyle; }
 std::string chart_svg(const Chart& chart, SvgPlace place) {
   const Legend legend = lay_out(legend_of(chart));
   const Frame2d frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0};
-  const double height = frame.bottom() + kBottom;
+  const double height =
+      frame.bottom() + kBottom + kLegendRow * static_cast<double>(chart.notes.size());
   std::string text = fmt::format(
       "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" "
       "role=\"img\"{}>\n<title>{}</title>\n",
@@ -324,7 +335,7 @@ std::string chart_svg(const Chart& chart, SvgPlace place) {
   text += fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
                       escaped(chart.title));
   text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);
-  text += axes_svg(frame);
+  text += axes_svg(frame) + notes_svg(frame);
   text += fmt::format(
       "<clipPath id=\"clip-{}\"><rect {}/></clipPath>\n<g clip-path=\"url(#clip-{})\">\n{}</g>\n",
       chart.id, frame_rectangle(frame), chart.id, content_svg(frame));

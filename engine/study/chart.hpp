@@ -48,6 +48,7 @@ struct Chart {
   std::vector<ChartBand> bands;
   std::vector<ChartLine> lines;
   std::vector<ChartMarks> marks;
+  std::vector<std::string> notes;  ///< lines below the plot, such as what labels stand for
 };
 
 /// Limits that hold all finite values with some room, on ticks; zero is a limit where it is near.

@@ -107,6 +107,17 @@ std::string machines_of(const StudyResult& result) {
   return fmt::format("{}", fmt::join(machines, "; "));
 }
 
+/// With the spread of its repeats, where it has some.
+void add_mark(ChartMarks& marks, const SetupResult& setup) {
+  marks.x.push_back(*setup.core_seconds);
+  marks.y.push_back(*setup.error);
+  if (setup.runs.size() < 2) return;
+  marks.low.resize(marks.x.size(), *setup.error);
+  marks.high.resize(marks.x.size(), *setup.error);
+  marks.low.back() = *setup.lowest_error;
+  marks.high.back() = *setup.highest_error;
+}
+
 nlohmann::ordered_json value_of(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
@@ -263,27 +274,23 @@ Chart study_chart(const StudyResult& result) {
   std::vector<double> x, y;
   for (const SetupResult& setup : result.setups) {
     if (!setup.error || !setup.core_seconds) continue;
-    if (setup.on_front) best.push_back(&setup);
     x.push_back(*setup.core_seconds);
-    for (const double error : {*setup.error, *setup.lowest_error, *setup.highest_error}) {
-      y.push_back(error);
+    y.insert(y.end(), {*setup.lowest_error, *setup.highest_error});
+    if (setup.on_front) {
+      best.push_back(&setup);
+    } else {
+      add_mark(others, setup);
     }
-    if (setup.on_front) continue;
-    others.x.push_back(*setup.core_seconds);
-    others.y.push_back(*setup.error);
-    others.low.push_back(*setup.lowest_error);
-    others.high.push_back(*setup.highest_error);
   }
   std::sort(best.begin(), best.end(), [](const SetupResult* a, const SetupResult* b) {
     return *a->core_seconds < *b->core_seconds;
   });
   ChartLine line{"", Ink::second, {}, {}};
   for (const SetupResult* setup : best) {
-    front.x.push_back(*setup->core_seconds);
-    front.y.push_back(*setup->error);
-    front.low.push_back(*setup->lowest_error);
-    front.high.push_back(*setup->highest_error);
-    front.labels.push_back(setup->name);
+    add_mark(front, *setup);
+    front.labels.push_back(fmt::format("{}", front.x.size()));
+    chart.notes.push_back(fmt::format("{}  {}: error {:.3f}, {:.4g} core-seconds", front.x.size(),
+                                      setup->name, *setup->error, *setup->core_seconds));
     line.x.push_back(*setup->core_seconds);
     line.y.push_back(*setup->error);
   }
