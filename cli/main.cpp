@@ -19,10 +19,10 @@ namespace sluice {
 namespace {
 
 // Verbs in the order of the help.
-constexpr std::array kVerbs{&add_run,    &add_validate, &add_plan,      &add_inspect, &add_sensors,
-                            &add_export, &add_report,   &add_study,     &add_serve,   &add_submit,
-                            &add_list,   &add_show,     &add_watch,     &add_pause,   &add_resume,
-                            &add_cancel, &add_delete,   &add_checkpoint};
+constexpr std::array kVerbs{&add_run,    &add_validate, &add_plan,   &add_inspect,   &add_sensors,
+                            &add_export, &add_report,   &add_study,  &add_stability, &add_serve,
+                            &add_submit, &add_list,     &add_show,   &add_watch,     &add_pause,
+                            &add_resume, &add_cancel,   &add_delete, &add_checkpoint};
 
 int fail(int code, std::string_view message) {
   if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);

@@ -52,5 +52,6 @@ void add_pause(CLI::App& app);
 void add_resume(CLI::App& app);
 void add_checkpoint(CLI::App& app);
 void add_delete(CLI::App& app);
+void add_stability(CLI::App& app);
 
 }  // namespace sluice

@@ -67,7 +67,11 @@ Finding energy_grew(const GuardLimits& limits, const StepFacts& facts) {
   const GuardBaselines& base = facts.baselines;
   const double growth = (*facts.energy - base.initial_energy) / base.energy_scale;
   if (growth <= limits.energy_growth) return {};
-  return Breach{growth, limits.energy_growth, kSmallerStep};
+  return Breach{
+      growth, limits.energy_growth,
+      "when it grew slowly, the density diffusion molteni_colagrossi lifted fluid at rest: "
+      "use fourtakas; when it grew fast, lower numerics.courant, or use the "
+      "kick_drift_kick integrator with artificial viscosity and density diffusion"};
 }
 
 Finding clumped(const GuardLimits& limits, const StepFacts& facts) {

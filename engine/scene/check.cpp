@@ -135,8 +135,8 @@ void check_work(const Scene& scene, Problems& problems) {
 
 /// A scheme whose errors fill the flow within the run is refused; slower growth is only told.
 void check_stability(const Scene& scene, Problems& problems) {
+  if (stability_outlook(scene) != Outlook::unstable) return;
   const StabilityPrediction p = predict_stability(scene);
-  if (p.outlook != Outlook::unstable) return;
   const std::string remedy =
       p.courant_limit > 0.0
           ? fmt::format("must be at most {:.3g} for this integrator, kernel, alpha and delta",

@@ -24,9 +24,9 @@ double decades(const Scene& scene, const LatticeStability& analysis) {
   return growth > LatticeStability::kTolerance ? steps * growth : 0.0;
 }
 
-Outlook outlook_of(const StabilityPrediction& p) {
-  if (p.growth_decades >= kRuinousDecades) return Outlook::unstable;
-  return p.growth_decades > 0.0 ? Outlook::growing : Outlook::stable;
+Outlook outlook_of(double growth_decades) {
+  if (growth_decades >= kRuinousDecades) return Outlook::unstable;
+  return growth_decades > 0.0 ? Outlook::growing : Outlook::stable;
 }
 
 nlohmann::ordered_json limit_json(double limit) {
@@ -48,10 +48,14 @@ std::string_view to_string(Outlook outlook) {
   return "";
 }
 
+Outlook stability_outlook(const Scene& scene) {
+  return outlook_of(decades(scene, LatticeStability(scene.method, Surface::free)));
+}
+
 StabilityPrediction predict_stability(const Scene& scene) {
   const Method& m = scene.method;
-  const LatticeStability analysis(m);
-  const CourantLimits limits = courant_limits(m);
+  const LatticeStability analysis(m, Surface::free);
+  const CourantLimits limits = courant_limits(m, Surface::free);
   StabilityPrediction p;
   p.courant = m.courant;
   p.courant_limit = limits.scheme;
@@ -59,7 +63,7 @@ StabilityPrediction predict_stability(const Scene& scene) {
   const double growth = analysis.spectral_radius(m.courant) - 1.0;
   p.growth_per_step = growth > LatticeStability::kTolerance ? growth : 0.0;
   p.growth_decades = decades(scene, analysis);
-  p.outlook = outlook_of(p);
+  p.outlook = outlook_of(p.growth_decades);
   p.sound_limit = limits.sound;
   p.viscosity_limit = limits.viscosity;
   p.diffusion_limit = limits.diffusion;

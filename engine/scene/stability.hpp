@@ -32,7 +32,10 @@ struct StabilityPrediction {
   double force_limit = 0.0;  ///< c/h times 0.25 sqrt(h/|f|): fluid that falls makes no longer steps
 };
 
-/// Takes about a millisecond.
+/// The outlook alone, in about a millisecond.
+[[nodiscard]] Outlook stability_outlook(const Scene& scene);
+
+/// All of it: limits are searched for, which takes some ten milliseconds.
 [[nodiscard]] StabilityPrediction predict_stability(const Scene& scene);
 
 /// "courant 1 of at most 2.12: stable, margin 112 %".

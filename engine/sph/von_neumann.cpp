@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "engine/sph/kernel.hpp"
 
@@ -16,11 +17,6 @@ constexpr double kLeastCourant = 0.01;
 constexpr double kAccuracy = 1e-4;
 /// Share of the pairs of a wave that eq. 8 acts between.
 constexpr double kApproaching = 0.5;
-
-double kernel_slope(KernelKind kind, double r_sq) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope(r_sq)
-                                                : WendlandC2::slope(r_sq);
-}
 
 Eigen::Matrix3d rate_matrix(const LatticeWave& w) {
   Eigen::Matrix3d rates;
@@ -35,9 +31,9 @@ double largest_modulus(const Eigen::Matrix3d& matrix) {
 
 /// eqs. 13-17: y_half += dt f(y), y = y_half + dt/2 f(y). For an eigenvalue lambda of the rates, mu
 /// = C lambda: z^2 - (1 + 3/2 mu) z + mu/2 = 0.
-double leap_frog_radius(const LatticeWave& wave, double courant) {
+double leap_frog_radius(std::span<const std::complex<double>> rates, double courant) {
   double most = 0.0;
-  for (const std::complex<double>& rate : wave.rates) {
+  for (const std::complex<double>& rate : rates) {
     const std::complex<double> mu = courant * rate;
     const std::complex<double> b = 1.0 + 1.5 * mu;
     const std::complex<double> root = std::sqrt(b * b - 2.0 * mu);
@@ -68,7 +64,7 @@ double decay_limit(Integrator integrator, double rate) {
 
 }  // namespace
 
-LatticeStability::LatticeStability(const Method& method)
+LatticeStability::LatticeStability(const Method& method, Surface surface)
     : integrator_(method.integrator), spacing_(method.spacing / method.smoothing_length) {
   if (method.viscosity) {
     alpha_ = method.viscosity->alpha;
@@ -90,6 +86,7 @@ LatticeStability::LatticeStability(const Method& method)
   for (int i = 1; i <= kWaves; ++i) {
     for (int j = 0; j <= i; ++j) waves_.push_back(wave(step * Vec(i, j)));
   }
+  if (surface == Surface::free) sheets_ = sheet_waves(method, kApproaching);
 }
 
 LatticeWave LatticeStability::wave(const Vec& k) const {
@@ -111,17 +108,24 @@ LatticeWave LatticeStability::wave(const Vec& k) const {
 }
 
 double LatticeStability::radius(const LatticeWave& wave, double courant) const {
-  return integrator_ == Integrator::modified_leap_frog ? leap_frog_radius(wave, courant)
+  return integrator_ == Integrator::modified_leap_frog ? leap_frog_radius(wave.rates, courant)
                                                        : kick_drift_kick_radius(wave, courant);
+}
+
+double LatticeStability::radius(const SheetWave& wave, double courant) const {
+  return integrator_ == Integrator::modified_leap_frog ? leap_frog_radius(wave.rates, courant)
+                                                       : wave.kick_drift_kick_radius(courant);
 }
 
 double LatticeStability::spectral_radius(double courant) const {
   double most = 0.0;
   for (const LatticeWave& w : waves_) most = std::max(most, radius(w, courant));
+  for (const SheetWave& w : sheets_) most = std::max(most, radius(w, courant));
   return most;
 }
 
-bool LatticeStability::lower(const LatticeWave& wave, double& limit) const {
+template <class Wave>
+bool LatticeStability::lower(const Wave& wave, double& limit) const {
   const auto grows = [&](double courant) { return radius(wave, courant) > 1.0 + kTolerance; };
   if (!grows(limit)) return false;
   double stable = 0.0;
@@ -148,6 +152,7 @@ double LatticeStability::courant_limit() const {
       }
     }
   }
+  for (const SheetWave& w : sheets_) lower(w, limit);
   return limit > kLeastCourant ? limit : 0.0;
 }
 
@@ -166,13 +171,13 @@ double LatticeStability::diffusion_limit() const {
   return decay_limit(integrator_, fastest);
 }
 
-CourantLimits courant_limits(const Method& method) {
-  const LatticeStability all(method);
+CourantLimits courant_limits(const Method& method, Surface surface) {
+  const LatticeStability all(method, surface);
   Method bare = method;
   bare.viscosity.reset();
   bare.diffusion.reset();
   return {.scheme = all.courant_limit(),
-          .sound = LatticeStability(bare).courant_limit(),
+          .sound = LatticeStability(bare, surface).courant_limit(),
           .viscosity = all.viscosity_limit(),
           .diffusion = all.diffusion_limit()};
 }

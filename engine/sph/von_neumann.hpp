@@ -5,6 +5,7 @@
 #include <complex>
 #include <vector>
 
+#include "engine/sph/free_sheet.hpp"
 #include "engine/sph/method.hpp"
 
 namespace sluice {
@@ -20,15 +21,18 @@ struct LatticeWave {
   std::array<std::complex<double>, 3> rates{};        ///< eigenvalues of the rates, c/h
 };
 
+/// Whether waves along a free surface are looked at beside those of the bulk.
+enum class Surface { none, free };
+
 /// Von Neumann analysis of the discrete scheme: the amplification matrix of one step for waves of
 /// the Brillouin zone, computed from the method's kernel, h/dx, alpha, epsilon, delta and
 /// integrator as the engine does them. Eq. 8 acts between particles that approach, which is half of
 /// the pairs of a short wave and half of the time for a long one, so it counts half. Left out:
-/// walls, the free surface, gravity, pressure at rest (p << rho_0 c^2), and wall friction.
+/// walls, gravity, pressure at rest (p << rho_0 c^2), and wall friction.
 /// Sources: eqs. 13-17 (they are Adams-Bashforth 2 for velocity and density), Adami et al. 2012.
 class LatticeStability {
  public:
-  explicit LatticeStability(const Method& method);
+  LatticeStability(const Method& method, Surface surface);
 
   /// Largest modulus of an eigenvalue of one step of length `courant` h/c, over all waves.
   [[nodiscard]] double spectral_radius(double courant) const;
@@ -46,8 +50,10 @@ class LatticeStability {
  private:
   [[nodiscard]] LatticeWave wave(const Vec& k) const;
   [[nodiscard]] double radius(const LatticeWave& wave, double courant) const;
+  [[nodiscard]] double radius(const SheetWave& wave, double courant) const;
   /// Lowers `limit` to that of `wave`, if it is lower; true when it was.
-  bool lower(const LatticeWave& wave, double& limit) const;
+  template <class Wave>
+  bool lower(const Wave& wave, double& limit) const;
 
   struct Neighbour {
     Vec distance;   ///< X_ij = x_ij/h
@@ -60,6 +66,7 @@ class LatticeStability {
   double spacing_;  ///< dx/h
   std::vector<Neighbour> neighbours_;
   std::vector<LatticeWave> waves_;
+  std::vector<SheetWave> sheets_;
 };
 
 /// Largest stable Courant numbers: of the scheme, and of parts of it alone.
@@ -69,6 +76,6 @@ struct CourantLimits {
   double viscosity = 0.0;  ///< eq. 8 alone; kMostCourant without it
   double diffusion = 0.0;  ///< eq. 7 alone; kMostCourant without it
 };
-[[nodiscard]] CourantLimits courant_limits(const Method& method);
+[[nodiscard]] CourantLimits courant_limits(const Method& method, Surface surface);
 
 }  // namespace sluice

@@ -44,7 +44,7 @@ double largest_gradient() {
 }
 
 TEST(LatticeStability, OfUndampedKickDriftKickIsTwoOverTheFastestPressureWave) {
-  const CourantLimits limits = courant_limits(bare(Integrator::kick_drift_kick));
+  const CourantLimits limits = courant_limits(bare(Integrator::kick_drift_kick), Surface::none);
   EXPECT_NEAR(limits.scheme, 2.0 / largest_gradient(), 0.005);
   EXPECT_EQ(limits.scheme, limits.sound);
   EXPECT_EQ(limits.viscosity, LatticeStability::kMostCourant);
@@ -53,7 +53,7 @@ TEST(LatticeStability, OfUndampedKickDriftKickIsTwoOverTheFastestPressureWave) {
 
 TEST(LatticeStability, UndampedLeapFrogIsStableAtNoStepAndGrowsWithTheFourthPowerOfIt) {
   // |z| = 1 + (C g)^4/4 + O(C^6) for Adams-Bashforth 2 on the imaginary axis.
-  const LatticeStability analysis(bare(Integrator::modified_leap_frog));
+  const LatticeStability analysis(bare(Integrator::modified_leap_frog), Surface::none);
   EXPECT_EQ(analysis.courant_limit(), 0.0);
   const double growth = std::pow(0.1 * largest_gradient(), 4) / 4;
   EXPECT_NEAR(analysis.spectral_radius(0.1) - 1.0, growth, 0.05 * growth);
@@ -68,7 +68,7 @@ TEST(LatticeStability, DiffusionAloneAllowsTwoOverItsFastestRateAndHalfOfThatWit
     Method m = bare(integrator);
     m.diffusion = DensityDiffusion{DiffusionKind::molteni_colagrossi, 0.5};
     const double on_axis = integrator == Integrator::kick_drift_kick ? 2.0 : 1.0;
-    EXPECT_NEAR(courant_limits(m).diffusion, on_axis / rate, 0.002 * on_axis / rate);
+    EXPECT_NEAR(courant_limits(m, Surface::none).diffusion, on_axis / rate, 0.002 * on_axis / rate);
   }
 }
 
@@ -76,9 +76,9 @@ TEST(LatticeStability, ViscosityLimitGoesWithOneOverAlphaAndBoundsTheScheme) {
   for (const Integrator integrator : kIntegrators) {
     Method m = bare(integrator);
     m.viscosity = ArtificialViscosity{4.0, 0.01};
-    const CourantLimits strong = courant_limits(m);
+    const CourantLimits strong = courant_limits(m, Surface::none);
     m.viscosity->alpha = 8.0;
-    const CourantLimits stronger = courant_limits(m);
+    const CourantLimits stronger = courant_limits(m, Surface::none);
     EXPECT_NEAR(strong.viscosity, 2 * stronger.viscosity, 1e-9);
     EXPECT_LE(stronger.scheme, stronger.viscosity * 1.001);
   }
@@ -91,24 +91,34 @@ TEST(LatticeStability, IsOneWaveLessStableJustAboveTheLimitAndNotBelow) {
       m.kernel = kernel;
       m.viscosity = ArtificialViscosity{0.02, 0.01};
       m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.1};
-      const LatticeStability analysis(m);
+      const LatticeStability analysis(m, Surface::free);
       const double limit = analysis.courant_limit();
-      EXPECT_GT(limit, 0.5);
+      EXPECT_GT(limit, 0.4);
       EXPECT_LE(analysis.spectral_radius(0.99 * limit), 1.0 + LatticeStability::kTolerance);
-      EXPECT_GT(analysis.spectral_radius(1.03 * limit), 1.0 + 1e-4);
+      EXPECT_GT(analysis.spectral_radius(1.03 * limit), 1.0 + 1e-6);
     }
   }
+}
+
+TEST(LatticeStability, IsLowerAtAFreeSurfaceWhereParticlesLackNeighbours) {
+  // The largest singular value of the divergence over a free patch of 20 x 20 particles, its
+  // corners included, is 2/2.177 (dense matrix, computed apart from this program); a sheet has no
+  // corners.
+  const Method m = bare(Integrator::kick_drift_kick);
+  const double sheet = courant_limits(m, Surface::free).scheme;
+  EXPECT_LT(sheet, 0.95 * courant_limits(m, Surface::none).scheme);
+  EXPECT_NEAR(sheet, 2.177, 0.02 * 2.177);
 }
 
 TEST(LatticeStability, DoesNotDependOnTheUnitsOfAScene) {
   Method m = bare(Integrator::kick_drift_kick);
   m.diffusion = DensityDiffusion{};
-  const double limit = courant_limits(m).scheme;
+  const double limit = courant_limits(m, Surface::none).scheme;
   m.spacing *= 1e6;
   m.smoothing_length *= 1e6;
   m.sound_speed *= 1e-3;
   m.reference_density *= 1e3;
-  EXPECT_NEAR(courant_limits(m).scheme, limit, 1e-9);
+  EXPECT_NEAR(courant_limits(m, Surface::none).scheme, limit, 1e-9);
 }
 
 }  // namespace

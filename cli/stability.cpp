@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/verbs.hpp"
+#include "engine/scene/problems.hpp"
+#include "engine/store/publish.hpp"
+#include "engine/study/stability_case.hpp"
+#include "engine/study/stability_map.hpp"
+#include "engine/study/stability_report.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StabilityArguments {
+  std::vector<std::string> cases;
+  fs::path folder;
+  fs::path json;
+  fs::path html;
+  fs::path svg;
+  bool quick = false;
+  bool map = false;
+  bool list = false;
+};
+
+/// A folder of one's own that goes away, or the one that was asked for.
+class SuiteFolder {
+ public:
+  explicit SuiteFolder(const fs::path& wanted)
+      : path_(wanted.empty()
+                  ? fs::temp_directory_path() / fmt::format("sluice-stability-{}", ::getpid())
+                  : wanted),
+        temporary_(wanted.empty()) {
+    fs::create_directories(path_);
+    if (!fs::is_empty(path_)) {
+      throw CommandEnd(ExitCode::usage,
+                       fmt::format("{} is not empty: name a new folder", path_.string()));
+    }
+  }
+  ~SuiteFolder() {
+    std::error_code ignored;
+    if (temporary_) fs::remove_all(path_, ignored);
+  }
+  SuiteFolder(const SuiteFolder&) = delete;
+  SuiteFolder& operator=(const SuiteFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  bool temporary_;
+};
+
+std::vector<StabilityCase> chosen(const std::vector<std::string>& names) {
+  const std::vector<StabilityCase> all = all_cases();
+  if (names.empty()) return all;
+  std::vector<std::string_view> known;
+  for (const StabilityCase& each : all) known.push_back(each.name);
+  std::vector<StabilityCase> picked;
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      throw CommandEnd(ExitCode::usage,
+                       fmt::format("there is no case {}: {}", name, hint(name, known)));
+    }
+    picked.push_back(all[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return picked;
+}
+
+void write_if_asked(const fs::path& path, const std::string& text) {
+  if (!path.empty()) publish_text(path, text);
+}
+
+void run_suite(const StabilityArguments& arguments) {
+  const std::vector<StabilityCase> cases = chosen(arguments.cases);
+  const SuiteFolder folder(arguments.folder);
+  StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full);
+  std::vector<JudgedCase> judged;
+  std::size_t met = 0;
+  for (const StabilityCase& each : cases) {
+    judged.push_back({each, run_case(each, bench)});
+    met += judged.back().result.met() ? 1U : 0U;
+    fmt::print("{}\n", suite_line(judged.back()));
+    std::fflush(stdout);
+  }
+  write_if_asked(arguments.json, suite_json(judged).dump(2) + "\n");
+  write_if_asked(arguments.html, suite_html(judged));
+  fmt::print("{} of {} gates met\n", met, judged.size());
+  if (met < judged.size()) throw CommandEnd(ExitCode::numerical_failure);
+}
+
+void run_map(const StabilityArguments& arguments) {
+  const StabilityMap map = make_stability_map([](const StabilityRow& row) {
+    fmt::print("{}\n", map_text_line(row));
+    std::fflush(stdout);
+  });
+  write_if_asked(arguments.json, map_json(map).dump(2) + "\n");
+  write_if_asked(arguments.svg, map_svg(map));
+  fmt::print("{} cells, {} differ from the prediction (+ stable, - grows, ! differs)\n",
+             map.cells(), map.disagreements());
+}
+
+void stability(const StabilityArguments& arguments) {
+  if (arguments.list) {
+    for (const StabilityCase& each : all_cases()) {
+      fmt::print("{:<18} {}; {}\n", each.name, each.about, each.gate);
+    }
+    return;
+  }
+  if (arguments.map) return run_map(arguments);
+  run_suite(arguments);
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app) {
+  const auto arguments = std::make_shared<StabilityArguments>();
+  CLI::App* verb =
+      app.add_subcommand("stability", "Run stiff and extreme cases and hold each against its gate");
+  verb->add_option("case", arguments->cases, "Cases to run; all when none is named");
+  verb->add_flag("--quick", arguments->quick, "Small forms of the cases");
+  verb->add_flag("--list", arguments->list, "Name the cases and their gates");
+  CLI::Option* map = verb->add_flag("--map", arguments->map,
+                                    "Predicted and measured limits of the Courant number instead");
+  verb->add_option("--json", arguments->json, "Also write JSON into this file");
+  verb->add_option("--html", arguments->html, "Also write a report with pictures into this file")
+      ->excludes(map);
+  verb->add_option("--svg", arguments->svg, "With --map: draw it into this file")->needs(map);
+  verb->add_option("--folder", arguments->folder,
+                   "Keep the cases' job folders here, checkpoints included");
+  verb->footer(
+      "Exit code 0: all gates met, 4: some missed.\nExample: sluice stability still-tank --quick");
+  verb->callback([arguments] { stability(*arguments); });
+}
+
+}  // namespace sluice

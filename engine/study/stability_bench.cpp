@@ -1,0 +1,89 @@
+#include "engine/study/stability_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "engine/run/run_loop.hpp"
+#include "engine/run/simulation.hpp"
+#include "engine/scene/canonical.hpp"
+#include "engine/scene/initial.hpp"
+#include "engine/store/digest.hpp"
+#include "engine/store/job_folder.hpp"
+#include "engine/store/series_file.hpp"
+
+namespace sluice {
+namespace {
+
+/// Keeps the warnings of a run.
+class WarningKeeper final : public Reporter {
+ public:
+  explicit WarningKeeper(std::vector<std::string>& kept) : kept_(&kept) {}
+  void progress(const Progress&) override {}
+  void event(std::string_view name, const nlohmann::ordered_json& fields) override {
+    if (name == "warning") kept_->push_back(fields.value("message", ""));
+  }
+
+ private:
+  std::vector<std::string>* kept_;
+};
+
+/// The state at step 0 with other velocities, as the checkpoint that the job goes on from.
+Checkpoint prepared(const Scene& scene, const StabilityBench::Prepare& prepare) {
+  Checkpoint start = Simulation(scene, {}).checkpoint();
+  prepare(start.solver.particles);
+  const Solver solver(scene.method, start.solver, create_particles(scene).walls, {});
+  start.guards = initial_baselines(scene.method, start.solver, solver.energy());
+  return start;
+}
+
+}  // namespace
+
+bool CaseRun::completed() const { return problems.empty() && outcome.exit_code == ExitCode::done; }
+
+const Series& CaseRun::sensor(std::string_view name) const {
+  for (const Series& each : series) {
+    if (each.name == name) return each;
+  }
+  throw std::logic_error(fmt::format("the case has no sensor {}", name));
+}
+
+CaseRun StabilityBench::run(const nlohmann::json& scene, StabilityCheck stability,
+                            const Prepare& prepare) {
+  CaseRun run;
+  const std::string text = scene.dump(2) + "\n";
+  ParseResult parsed = parse_scene(text, stability);
+  if (!parsed.scene) {
+    run.problems = std::move(parsed.problems);
+    return run;
+  }
+  run.scene = *std::move(parsed.scene);
+  try {
+    (void)create_particles(run.scene);
+  } catch (const SceneError& error) {
+    run.problems.push_back(error.problem());
+    return run;
+  }
+  const std::string name = fmt::format("{:03}-{}", ++runs_, run.scene.name);
+  JobFolder folder = JobFolder::create(folder_ / name, text);
+  if (prepare) folder.write_checkpoint(prepared(run.scene, prepare));
+
+  WarningKeeper reporter(run.warnings);
+  RunOptions options;
+  run.outcome = run_job(folder, run.scene, options, reporter);
+  if (run.outcome.exit_code == ExitCode::checkpointed) {
+    throw std::runtime_error("stopped by a signal");
+  }
+  const Expectation expected{scene_hash(identity_text(run.scene)), run.scene.method.integrator};
+  if (auto restored = folder.newest_checkpoint(expected)) {
+    run.checkpoint = name + "/" + restored->path.filename().string();
+    run.last = std::move(restored->checkpoint);
+  }
+  if (std::filesystem::exists(folder.paths().series())) {
+    run.series = read_series(folder.paths().series());
+  }
+  return run;
+}
+
+}  // namespace sluice

@@ -1,0 +1,135 @@
+#include "engine/study/stability_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string figures_text(const CaseResult& result) {
+  std::string text;
+  for (const Figure& figure : result.figures) {
+    text += fmt::format("{}{} {:.3g} (at most {:.3g})", text.empty() ? "" : ", ", figure.what,
+                        figure.value, figure.gate);
+  }
+  return text;
+}
+
+/// NaN and infinity have no JSON number.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json verdict_json(const CaseResult& r) {
+  Json verdict{{"verdict", to_string(r.verdict)},
+               {"reason", r.reason.empty() ? Json(nullptr) : Json(r.reason)}};
+  for (const char* key : {"step", "time", "particle", "value", "limit"}) verdict[key] = nullptr;
+  if (r.diagnosis) {
+    verdict["step"] = r.diagnosis->step;
+    verdict["time"] = number(r.diagnosis->time);
+    if (r.diagnosis->particle) verdict["particle"] = number(*r.diagnosis->particle);
+    verdict["value"] = number(r.diagnosis->value);
+    verdict["limit"] = number(r.diagnosis->limit);
+  }
+  verdict["checkpoint"] = r.checkpoint.empty() ? Json(nullptr) : Json(r.checkpoint);
+  return verdict;
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string picture_svg(const std::vector<Dot>& dots) {
+  if (dots.empty()) return "";
+  constexpr double kSize = 120;
+  std::string svg =
+      fmt::format(R"(<svg width="{0}" height="{0}" viewBox="-3 -3 {1} {1}">)", kSize, kSize + 6);
+  for (const Dot& dot : dots) {
+    svg +=
+        fmt::format(R"svg(<circle cx="{:.1f}" cy="{:.1f}" r="1.4" fill="hsl({:.0f},80%,45%)"/>)svg",
+                    kSize * dot.x, kSize * (1.0 - dot.y), 220.0 * (1.0 - dot.speed));
+  }
+  return svg + "</svg>";
+}
+
+std::size_t count_met(const std::vector<JudgedCase>& all) {
+  return static_cast<std::size_t>(
+      std::count_if(all.begin(), all.end(), [](const JudgedCase& j) { return j.result.met(); }));
+}
+
+}  // namespace
+
+std::string suite_line(const JudgedCase& judged) {
+  const CaseResult& r = judged.result;
+  std::string line =
+      fmt::format("{:<4} {:<18} {:<21} {:>6.2f} s  {}", r.met() ? "met" : "MISS",
+                  judged.subject.name, to_string(r.verdict), r.seconds, figures_text(r));
+  if (!r.met()) line += fmt::format("\n     gate: {}", judged.subject.gate);
+  if (!r.reason.empty()) line += fmt::format("\n     {}", r.reason);
+  return line;
+}
+
+Json suite_json(const std::vector<JudgedCase>& all) {
+  Json cases = Json::array();
+  for (const auto& [subject, result] : all) {
+    Json figures = Json::array();
+    for (const Figure& f : result.figures) {
+      figures.push_back(
+          {{"what", f.what}, {"value", number(f.value)}, {"gate", f.gate}, {"met", f.met()}});
+    }
+    cases.push_back({{"name", subject.name},
+                     {"about", subject.about},
+                     {"gate", subject.gate},
+                     {"met", result.met()},
+                     {"verdict", verdict_json(result)},
+                     {"figures", figures},
+                     {"seconds", result.seconds}});
+  }
+  return {{"met", count_met(all) == all.size()}, {"cases", cases}};
+}
+
+std::string suite_html(const std::vector<JudgedCase>& all) {
+  std::string rows;
+  for (const auto& [subject, result] : all) {
+    rows += fmt::format(
+        "<tr class=\"{}\"><td>{}</td><td><b>{}</b><br>{}</td><td>{}</td><td>{}</td><td>{}</td>"
+        "<td>{}</td></tr>\n",
+        result.met() ? "met" : "miss", result.met() ? "met" : "missed", escaped(subject.name),
+        escaped(subject.about), to_string(result.verdict),
+        escaped(figures_text(result)) + "<br><small>" + escaped(result.reason) + "</small>",
+        escaped(subject.gate), picture_svg(result.picture));
+  }
+  return fmt::format(
+      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Sluice stability</title>\n"
+      "<style>body{{font:14px sans-serif;margin:2em}}td,th{{padding:6px;text-align:left;"
+      "vertical-align:top;border-bottom:1px solid #ccc}}.miss td:first-child{{color:#b00020;"
+      "font-weight:bold}}</style>\n<h1>Stability: {} of {} gates met</h1>\n<table><tr><th></th>"
+      "<th>case</th><th>verdict</th><th>figures</th><th>gate</th><th>last state, colour is speed"
+      "</th></tr>\n{}</table></html>\n",
+      count_met(all), all.size(), rows);
+}
+
+}  // namespace sluice

@@ -1,0 +1,108 @@
+#include "engine/study/stability_scenes.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kGravity = 9.81;  // m/s^2
+constexpr std::array kProbeDepths{0.25, 0.5, 0.75};
+
+Json pair(const Vec& vec) { return Json::array({vec.x(), vec.y()}); }
+
+std::string probe_name(std::size_t index) { return "p" + std::to_string(index); }
+
+}  // namespace
+
+Json recommended_scheme() {
+  return {{"kernel", "wendland_c2"},
+          {"integrator", "kick_drift_kick"},
+          {"courant", 1.0},
+          {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
+          {"artificial_viscosity", {{"alpha", 0.02}}},
+          {"wall_pressure", "clamped"}};
+}
+
+Json paper_scheme() {
+  return {{"kernel", "truncated_gaussian"},
+          {"integrator", "modified_leap_frog"},
+          {"courant", 0.25},
+          {"density_diffusion", {{"kind", "molteni_colagrossi"}, {"delta", 0.1}}},
+          {"artificial_viscosity", {{"alpha", 0.02}}},
+          {"reinitialisation", {{"interval", 20}}}};
+}
+
+Json rectangle(Vec corner, Vec size) {
+  return {{"shape", "rectangle"}, {"corner", pair(corner)}, {"size", pair(size)}};
+}
+
+Json circle(Vec center, double radius) {
+  return {{"shape", "circle"}, {"center", pair(center)}, {"radius", radius}, {"pressure", "zero"}};
+}
+
+Json tank_scene(std::string_view name, Vec size, Json fluid, double spacing, double sound,
+                double end_time) {
+  return {{"name", name},
+          {"tank", {{"width", size.x()}, {"height", size.y()}}},
+          {"fluid", std::move(fluid)},
+          {"gravity", {0.0, -kGravity}},
+          {"material", {{"sound_speed", sound}}},
+          {"resolution", {{"spacing", spacing}}},
+          {"numerics", recommended_scheme()},
+          {"sensors", {{{"name", "energy"}, {"kind", "energy"}, {"interval", end_time / 200}}}},
+          {"end_time", end_time}};
+}
+
+Json still_water(std::string_view name, const StillWater& w, const Json& numerics) {
+  const double wave = std::sqrt(w.gravity * w.depth);
+  const double end = w.time * w.depth / wave;
+  const Vec size = w.depth * Vec(w.width, 1.0);
+  Json scene = tank_scene(name, size.cwiseProduct(Vec(1.0, 1.3)),
+                          Json::array({rectangle(Vec::Zero(), size)}), w.depth / w.per_depth,
+                          w.sound_ratio * wave, end);
+  scene["gravity"] = {0.0, -w.gravity};
+  scene["material"]["density"] = w.density;
+  scene["numerics"] = numerics;
+  for (std::size_t i = 0; i < kProbeDepths.size(); ++i) {
+    const Vec place(0.5 * size.x(), w.depth * (1.0 - kProbeDepths[i]));
+    scene["sensors"].push_back({{"name", probe_name(i)},
+                                {"kind", "pressure"},
+                                {"position", pair(place)},
+                                {"interval", end / 200}});
+  }
+  scene["sensors"].push_back({{"name", "surface"},
+                              {"kind", "surface_height"},
+                              {"x", 0.5 * size.x()},
+                              {"interval", end / 200}});
+  return scene;
+}
+
+double pressure_error(const CaseRun& run, const StillWater& w, double from) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kProbeDepths.size(); ++i) {
+    const Series& probe = run.sensor(probe_name(i));
+    for (std::size_t n = 0; n < probe.size(); ++n) {
+      if (probe.time[n] < from * run.scene.end_time) continue;
+      const double scaled = probe.values[n] / (w.density * w.gravity * w.depth);
+      sum += std::pow(scaled - kProbeDepths[i], 2);
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : HUGE_VAL;
+}
+
+Json dam_break(std::string_view name, double width, double height, double per_length,
+               double end_in_root_h_over_g) {
+  const double spacing = std::min(width, height) / per_length;
+  const double sound = 10 * std::sqrt(2 * kGravity * height);
+  const Vec tank(std::max(4 * width, 2 * height), 2 * height);
+  return tank_scene(name, tank, Json::array({rectangle(Vec::Zero(), Vec(width, height))}), spacing,
+                    sound, end_in_root_h_over_g * std::sqrt(height / kGravity));
+}
+
+}  // namespace sluice

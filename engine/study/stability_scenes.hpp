@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "engine/scene/scene.hpp"
+#include "engine/study/stability_bench.hpp"
+
+namespace sluice {
+
+/// The scheme that the suite holds to its gates: kick-drift-kick at C = 1, Fourtakas diffusion
+/// delta 0.1, viscosity alpha 0.02, wall pressure not below zero.
+[[nodiscard]] nlohmann::json recommended_scheme();
+/// The paper's: modified leap-frog at C = 0.25, delta 0.1, alpha 0.02, Shepard every 20 steps.
+[[nodiscard]] nlohmann::json paper_scheme();
+
+/// Water over the whole width of a tank, in units of its depth H.
+struct StillWater {
+  double depth = 1.0;         ///< H, m
+  double width = 1.0;         ///< of the tank, in H
+  double per_depth = 20.0;    ///< particles in H
+  double gravity = 9.81;      ///< m/s^2
+  double density = 1000.0;    ///< kg/m^3
+  double sound_ratio = 14.2;  ///< c / sqrt(g H)
+  double time = 6.0;          ///< end, in sqrt(H/g)
+};
+/// With pressure sensors at H/4, H/2 and 3H/4 in the middle, `energy` and `surface`.
+[[nodiscard]] nlohmann::json still_water(std::string_view name, const StillWater& water,
+                                         const nlohmann::json& numerics);
+/// Relative L2 of the pressures of still_water() against rho g times the depth, over rho g H, from
+/// `from` of the end time on.
+[[nodiscard]] double pressure_error(const CaseRun& run, const StillWater& water, double from);
+
+/// A tank with an open top and the given fluid; lengths in m, gravity 9.81, sound speed `sound`.
+[[nodiscard]] nlohmann::json tank_scene(std::string_view name, Vec size, nlohmann::json fluid,
+                                        double spacing, double sound, double end_time);
+[[nodiscard]] nlohmann::json rectangle(Vec corner, Vec size);
+[[nodiscard]] nlohmann::json circle(Vec center, double radius);
+
+/// A column of w x H that falls into a tank of 4 w, but at least 2 H: sizes in m, `per_length`
+/// particles in the shorter side.
+[[nodiscard]] nlohmann::json dam_break(std::string_view name, double width, double height,
+                                       double per_length, double end_in_root_h_over_g);
+
+}  // namespace sluice
