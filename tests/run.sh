@@ -104,7 +104,8 @@ step_asan() {
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
   local parts=(sph scene store run study)
   if build asan "${parts[@]/#/test_}"; then
-    check asan -R "^($(IFS='|' && echo "${parts[*]}"))\." -LE long -E the_schema_agrees
+    # Names of scripts begin small: they run the program, which is not built here.
+    check asan -R "^($(IFS='|' && echo "${parts[*]}"))\.[A-Z]" -LE long
   else
     fail "asan: build"
   fi
