@@ -34,7 +34,7 @@ constexpr const char* kPaper = R"json({
     {"name": "P4", "kind": "pressure", "position": [1.61, 0.08], "interval": 5e-05},
     {"name": "energy", "kind": "energy", "interval": 0.001}
   ],
-  "end_time": 1e3
+  "end_time": 200
 })json";
 
 Scene paper() {
