@@ -59,7 +59,7 @@ def make_clone(folder, program, root, as_it_is):
     with open(os.path.join(root, SCENE), encoding="utf-8") as stream:
         scene = json.load(stream)
     if not as_it_is:
-        scene["resolution"]["spacing"] *= 2.5
+        scene["resolution"]["spacing"] *= 1.2
     with open(os.path.join(folder, SCENE), "w", encoding="utf-8") as stream:
         json.dump(scene, stream)
 
