@@ -11,6 +11,7 @@
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/publish.hpp"
+#include "engine/study/markup.hpp"
 
 namespace sluice {
 namespace {
@@ -33,22 +34,6 @@ constexpr std::array kAttributes{Item{"vx", R"(NumberType="Float" Precision="4")
                                  Item{"vy", R"(NumberType="Float" Precision="4")"},
                                  Item{"pressure", R"(NumberType="Float" Precision="4")"},
                                  Item{"id", R"(NumberType="UInt" Precision="8")"}};
-
-std::string xml_escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    if (letter == '&') {
-      result += "&amp;";
-    } else if (letter == '<') {
-      result += "&lt;";
-    } else if (letter == '"') {
-      result += "&quot;";
-    } else {
-      result += letter;
-    }
-  }
-  return result;
-}
 
 std::string data_item(std::string_view file, const Item& item, std::size_t count) {
   return fmt::format(R"(<DataItem Format="HDF" {} Dimensions="{}">{}:/particles/{}</DataItem>)",
@@ -78,7 +63,7 @@ void export_xdmf(const std::vector<fs::path>& frames, const fs::path& output) {
       "  <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const fs::path& path : frames) {
     const fs::path reference = fs::absolute(path).lexically_relative(fs::absolute(output));
-    text += xdmf_grid(xml_escaped(reference.string()), read_frame(path));
+    text += xdmf_grid(escaped(reference.string()), read_frame(path));
   }
   text += "  </Grid>\n </Domain>\n</Xdmf>\n";
   const fs::path target = output / "frames.xdmf";

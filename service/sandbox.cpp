@@ -94,14 +94,14 @@ void allow(int ruleset, const fs::path& path, std::uint64_t access, std::uint64_
 
 /// What this program was loaded from; a worker is the same program.
 struct LoadedFiles {
-  std::set<fs::path> library_folders;
+  std::set<fs::path> object_folders;
   fs::path interpreter;
 };
 
 int note_loaded_file(dl_phdr_info* info, std::size_t, void* data) {
   auto* files = static_cast<LoadedFiles*>(data);
   const fs::path path(info->dlpi_name);
-  if (path.is_absolute()) files->library_folders.insert(path.parent_path());
+  if (path.is_absolute()) files->object_folders.insert(path.parent_path());
   for (int i = 0; i < info->dlpi_phnum; ++i) {
     if (info->dlpi_phdr[i].p_type != PT_INTERP) continue;
     // The loader gives addresses as numbers.
@@ -116,7 +116,7 @@ void allow_program(int ruleset, int program, std::uint64_t handled) {
   ::dl_iterate_phdr(note_loaded_file, &files);
   allow(ruleset, program, kExecute);
   allow(ruleset, files.interpreter, kExecute, handled);
-  for (const fs::path& folder : files.library_folders) allow(ruleset, folder, kRead, handled);
+  for (const fs::path& folder : files.object_folders) allow(ruleset, folder, kRead, handled);
   for (const char* path :
        {"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache",
         "/etc/localtime", "/usr/share/zoneinfo", "/sys/devices/system/cpu"}) {

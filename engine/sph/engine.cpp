@@ -65,6 +65,7 @@ class Engine final : public Solver::Impl {
   void bind();
   void place_sums();
   [[nodiscard]] std::uint32_t most_neighbours();
+  [[nodiscard]] std::uint32_t count_most_neighbours() const;
 
   // Passes.
   void step_leap_frog();
@@ -74,7 +75,7 @@ class Engine final : public Solver::Impl {
   void reinitialise();
   void run_sweep(typename Sweeps<T>::Sweep loop, const PairList* to_wall);
   void gather(const ParticleSpan& p, std::span<const SumBlock> blocks);
-  void measure(double ahead);
+  void measure();
   void note_motion();
   void choose_time_step();
   [[nodiscard]] bool reinitialisation_due(std::uint64_t step) const;
@@ -238,11 +239,11 @@ void Engine<T>::load(const SolverState& state) {
       sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
   if (fresh) set_reach();
   bind();
-  measure(0.0);
+  measure();
   if (method.integrator == Integrator::kick_drift_kick) {
     sum_wall_pressure();
     if (fresh) start_kick_drift_kick();
-    measure(0.0);
+    measure();
   }
 }
 
@@ -472,9 +473,13 @@ std::uint32_t Engine<T>::most_neighbours() {
   });
   std::uint32_t most = 0;
   for (const std::uint32_t m : most_of) most = std::max(most, m);
-  if (most <= kManyNeighbours) return most;
+  return most <= kManyNeighbours ? most : count_most_neighbours();
+}
 
-  // A neighbour in another tile is left out of this count.
+/// Over all particles; a neighbour in another tile is left out of this count.
+template <typename T>
+std::uint32_t Engine<T>::count_most_neighbours() const {
+  const auto& lists = fluid_to_fluid_.chunks;
   std::vector<std::uint32_t> count(layout.slots(), 0);
   const T cut_off_sq = static_cast<T>(method.support_ratio() * method.support_ratio());
   for (std::size_t k = 0; k < lists.size(); ++k) {
@@ -602,9 +607,10 @@ void Engine<T>::note_motion() {
 }
 
 template <typename T>
-void Engine<T>::measure(double ahead) {
+void Engine<T>::measure() {
   motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    sweeps_.updates.measure(p, method, ahead, seen);
+    sweeps_.updates.measure(p, method, 0.0, seen);
+    if (p.ax != nullptr) sweeps_.updates.measure_acceleration(p, seen);
   });
   note_motion();
 }
@@ -705,6 +711,7 @@ void Engine<T>::step_kick_drift_kick() {
     gather(p, std::array{kXSum, kYSum});
     sweeps_.updates.kick(p, r, time_step);
     sweeps_.updates.measure(p, method, 0.0, seen);
+    sweeps_.updates.measure_acceleration(p, seen);
   });
   note_motion();
   extremes.finite = extremes.finite && finite;

@@ -186,12 +186,16 @@ inline void measure(const ParticleSpan& p, const Method& method, double ahead, M
   out.moved = !hn::AllFalse(d, moved);
   out.outside = !hn::AllFalse(d, outside);
   out.finite = hn::AllFalse(d, broken);
-  if (p.ax == nullptr) return;
-  V largest = hn::Zero(d);
+}
+
+inline void measure_acceleration(const ParticleSpan& p, Motion& out) {
+  using D = hn::ScalableTag<double>;
+  const D d;
+  hn::Vec<D> largest = hn::Zero(d);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const auto used = at(p.reach, s) < hn::Set(d, kNoReach);
-    const V ax = at(p.ax, s);
-    const V ay = at(p.ay, s);
+    const auto used = hn::LoadU(d, p.reach + s) < hn::Set(d, kNoReach);
+    const auto ax = hn::LoadU(d, p.ax + s);
+    const auto ay = hn::LoadU(d, p.ay + s);
     largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
   }
   out.acceleration_sq = hn::GetLane(hn::MaxOfLanes(d, largest));
@@ -230,6 +234,7 @@ void fill_updates(Updates<T>& out) {
   out.write_pairs = &write_pairs<T>;
   out.reinitialise = &reinitialise_density<T>;
   out.measure = &measure;
+  out.measure_acceleration = &measure_acceleration;
   out.measure_rates = &measure_rates<T>;
 }
 

@@ -94,6 +94,8 @@ struct Updates {
   void (*reinitialise)(const ParticleSpan&, const T* excess, double reference_density) = nullptr;
   /// Speeds, densities and displacements; positions are looked at `ahead` seconds later.
   void (*measure)(const ParticleSpan&, const Method&, double ahead, Motion&) = nullptr;
+  /// Largest acceleration of the state.
+  void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;
   /// Largest acceleration of the rates.
   void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
 };

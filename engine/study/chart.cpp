@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/study/markup.hpp"
+
 namespace sluice {
 namespace {
 
@@ -289,29 +291,6 @@ std::string content_svg(const Frame2d& frame) {
 }
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += letter;
-    }
-  }
-  return result;
-}
 
 std::string_view chart_style() { return kStyle; }
 

@@ -65,9 +65,6 @@ enum class SvgPlace { page, file };
 /// The CSS of charts and pictures, for a light and a dark page.
 [[nodiscard]] std::string_view chart_style();
 
-/// Text with what XML and HTML give a meaning replaced.
-[[nodiscard]] std::string escaped(std::string_view text);
-
 /// Positions of ticks from low to high, 1, 2 or 5 times a power of ten apart, about `wanted` of
 /// them; for a logarithmic axis the powers of ten, with 2 and 5 between where there are few.
 [[nodiscard]] std::vector<double> ticks(const Axis& axis, int wanted);

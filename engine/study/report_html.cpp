@@ -5,6 +5,7 @@
 
 #include "engine/study/chart.hpp"
 #include "engine/study/figures.hpp"
+#include "engine/study/markup.hpp"
 #include "engine/study/report.hpp"
 #include "engine/study/report_tables.hpp"
 

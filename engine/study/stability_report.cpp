@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "engine/study/markup.hpp"
+
 namespace sluice {
 namespace {
 
@@ -37,29 +39,6 @@ Json verdict_json(const CaseResult& r) {
   }
   verdict["checkpoint"] = r.checkpoint.empty() ? Json(nullptr) : Json(r.checkpoint);
   return verdict;
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 std::string picture_svg(const std::vector<Dot>& dots) {

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "engine/study/chart.hpp"
+#include "engine/study/markup.hpp"
 
 namespace sluice {
 namespace {

@@ -92,7 +92,7 @@ class CheckTree(unittest.TestCase):
             self.assert_one(found, "path of a machine")
 
     def test_a_path_below_a_variable_or_in_a_word_is_none(self):
-        text = '"$folder/tmp/x" "${folder}/work/y" src/home/z\n'
+        text = '"$folder/tmp/x" "${folder}' + '/work' + '/y" src/home/z\n'
         self.assertEqual(self.with_file("cli/notes.txt", text), [])
 
     def test_a_folder_without_a_readme_is_found(self):
