@@ -8,10 +8,10 @@
 
 #include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
+#include "engine/ladder/markup.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/publish.hpp"
-#include "engine/study/markup.hpp"
 
 namespace sluice {
 namespace {

@@ -1,5 +1,3 @@
-#include "engine/study/study.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,10 +10,11 @@
 #include "cli/adopt_scene.hpp"
 #include "cli/run_pool.hpp"
 #include "cli/verbs.hpp"
+#include "engine/ladder/study_output.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/publish.hpp"
-#include "engine/study/study_output.hpp"
+#include "engine/study/study_row.hpp"
 
 namespace sluice {
 namespace {

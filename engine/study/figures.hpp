@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/study/chart.hpp"
+#include "engine/ladder/chart.hpp"
 #include "engine/study/report.hpp"
 
 namespace sluice {

@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "engine/study/chart.hpp"
+#include "engine/ladder/chart.hpp"
+#include "engine/ladder/markup.hpp"
 #include "engine/study/figures.hpp"
-#include "engine/study/markup.hpp"
 #include "engine/study/report.hpp"
 #include "engine/study/report_tables.hpp"
 

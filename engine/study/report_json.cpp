@@ -91,6 +91,12 @@ Json curves_json(const SeriesEvidence& evidence) {
               {"curves", std::move(curves)}};
 }
 
+/// Fluid particles at the start, wherever they are now.
+std::optional<double> particles_of(const RunFacts& facts) {
+  if (!facts.particles) return std::nullopt;
+  return *facts.particles + facts.overtopped.value_or(0.0) + facts.leaked.value_or(0.0);
+}
+
 Json cost_json(const RunFacts& facts) {
   Json passes = Json::array();
   for (const PassCost& pass : facts.passes) {
@@ -100,6 +106,11 @@ Json cost_json(const RunFacts& facts) {
               {"core_seconds_scaled_from_last_attempt", facts.core_seconds_scaled},
               {"seconds_of_last_attempt", value_of(facts.seconds)},
               {"particle_steps_per_second", value_of(facts.particle_steps_per_second)},
+              {"steps", value_of(facts.step)},
+              {"fluid_particles", value_of(particles_of(facts))},
+              {"threads", value_of(facts.threads)},
+              {"machine", facts.machine},
+              {"simd_target", facts.simd_target},
               {"passes", std::move(passes)}};
 }
 

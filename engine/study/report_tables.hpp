@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/ladder/table.hpp"
 #include "engine/study/report.hpp"
-#include "engine/study/table.hpp"
 
 namespace sluice {
 

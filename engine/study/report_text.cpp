@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include "engine/ladder/table.hpp"
 #include "engine/study/report.hpp"
 #include "engine/study/report_tables.hpp"
-#include "engine/study/table.hpp"
 
 namespace sluice {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "engine/study/markup.hpp"
+#include "engine/ladder/markup.hpp"
 
 namespace sluice {
 namespace {

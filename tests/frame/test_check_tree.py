@@ -54,6 +54,13 @@ class CheckTree(unittest.TestCase):
         found = self.with_file("engine/sph/x.cpp", ' #  include "engine/store/file.hpp"\n')
         self.assert_one(found, "engine/sph may not include from engine/store")
 
+    def test_the_service_may_include_studies_and_the_store_may_not(self):
+        files = {"engine/ladder/README.md": "", "engine/ladder/study.hpp": "#pragma once\n"}
+        line = '#include "engine/ladder/study.hpp"\n'
+        self.assertEqual(self.found_in({**GOOD, **files, "service/studies.cpp": line}), [])
+        self.assert_one(self.found_in({**GOOD, **files, "engine/store/x.cpp": line}),
+                        "engine/store may not include from engine/ladder")
+
     def test_the_service_may_not_include_the_run(self):
         files = {"engine/run/README.md": "", "engine/run/run.hpp": "#pragma once\n",
                  "service/worker.cpp": '#include "engine/run/run.hpp"\n'}

@@ -1,4 +1,4 @@
-#include "engine/study/chart.hpp"
+#include "engine/ladder/chart.hpp"
 
 #include <gtest/gtest.h>
 

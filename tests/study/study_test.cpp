@@ -1,4 +1,4 @@
-#include "engine/study/study.hpp"
+#include "engine/ladder/study.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/study/table.hpp"
+#include "engine/ladder/table.hpp"
 
 #include <gtest/gtest.h>
 

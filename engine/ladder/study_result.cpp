@@ -1,4 +1,4 @@
-#include "engine/study/study_result.hpp"
+#include "engine/ladder/study_result.hpp"
 
 #include <algorithm>
 #include <map>
@@ -144,6 +144,20 @@ std::vector<Convergence> find_convergence(const std::vector<SetupResult>& setups
 }
 
 }  // namespace
+
+std::string_view to_string(RunState state) {
+  switch (state) {
+    case RunState::waiting:
+      return "waiting";
+    case RunState::stopped:
+      return "stopped";
+    case RunState::completed:
+      return "completed";
+    case RunState::failed:
+      return "failed";
+  }
+  return "?";
+}
 
 StudyResult evaluate(const Study& study, std::vector<StudyRun> runs, std::vector<StudyRow> rows) {
   StudyResult result{study, std::move(runs), std::move(rows), {}, {}, {}};

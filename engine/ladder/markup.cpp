@@ -1,4 +1,4 @@
-#include "engine/study/markup.hpp"
+#include "engine/ladder/markup.hpp"
 
 namespace sluice {
 

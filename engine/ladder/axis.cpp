@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/study/chart.hpp"
+#include "engine/ladder/chart.hpp"
 
 namespace sluice {
 namespace {

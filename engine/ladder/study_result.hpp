@@ -1,14 +1,12 @@
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "engine/study/convergence.hpp"
-#include "engine/study/study.hpp"
+#include "engine/ladder/convergence.hpp"
+#include "engine/ladder/study.hpp"
 
 namespace sluice {
 
@@ -65,10 +63,6 @@ struct StudyResult {
   std::vector<Cheapest> cheapest;
   std::vector<Convergence> convergence;
 };
-
-/// The state of a run from its folder: no simulation is started and nothing is changed. A folder
-/// that does not hold this run yet is waiting.
-[[nodiscard]] StudyRow read_row(const std::filesystem::path& folder, const StudyRun& run);
 
 /// Puts the rows together: set-ups, Pareto front, targets, convergence. Pure.
 [[nodiscard]] StudyResult evaluate(const Study& study, std::vector<StudyRun> runs,

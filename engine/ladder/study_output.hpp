@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/study/chart.hpp"
-#include "engine/study/study_result.hpp"
-#include "engine/study/table.hpp"
+#include "engine/ladder/chart.hpp"
+#include "engine/ladder/study_result.hpp"
+#include "engine/ladder/table.hpp"
 
 namespace sluice {
 

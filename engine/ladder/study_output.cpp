@@ -1,4 +1,4 @@
-#include "engine/study/study_output.hpp"
+#include "engine/ladder/study_output.hpp"
 
 #include <fmt/format.h>
 

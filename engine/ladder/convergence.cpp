@@ -1,4 +1,4 @@
-#include "engine/study/convergence.hpp"
+#include "engine/ladder/convergence.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "engine/study/table.hpp"
+#include "engine/ladder/table.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "engine/study/markup.hpp"
+#include "engine/ladder/markup.hpp"
 
 namespace sluice {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/study/chart.hpp"
+#include "engine/ladder/chart.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "engine/study/markup.hpp"
+#include "engine/ladder/markup.hpp"
 
 namespace sluice {
 namespace {
