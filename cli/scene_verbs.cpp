@@ -128,16 +128,28 @@ void show_plan(const SceneArguments& arguments) {
                                                   trial);
 }
 
+/// Regions that overlap, and a scene without fluid, show only when it is filled.
+std::vector<Problem> problems_when_filled(const Scene& scene) {
+  if (estimate(scene).fluid_particles > kTrialParticles) return {};
+  try {
+    (void)create_particles(scene);
+  } catch (const SceneError& error) {
+    return {error.problem()};
+  }
+  return {};
+}
+
 /// All problems as JSON on stdout: for editors and scripts.
 void validate_as_json(const std::string& path) {
-  const ParseResult result = parse_scene(read_text(path, kMaxSceneBytes + 1));
+  ParseResult result = parse_scene(read_text(path, kMaxSceneBytes + 1));
+  if (result.scene) result.problems = problems_when_filled(*result.scene);
   Json problems = Json::array();
   for (const Problem& problem : result.problems) {
     problems.push_back(Json{{"pointer", problem.pointer}, {"message", problem.message}});
   }
   const Json report{{"valid", result.problems.empty()}, {"problems", problems}};
   fmt::print("{}\n", report.dump(2));
-  if (!result.scene) throw CommandEnd(ExitCode::invalid_scene);
+  if (!result.problems.empty()) throw CommandEnd(ExitCode::invalid_scene);
 }
 
 void validate(const SceneArguments& arguments) {

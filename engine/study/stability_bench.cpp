@@ -12,9 +12,12 @@
 #include "engine/store/digest.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/series_file.hpp"
+#include "engine/study/stability_scenes.hpp"
 
 namespace sluice {
 namespace {
+
+using Json = nlohmann::json;
 
 /// Keeps the warnings of a run.
 class WarningKeeper final : public Reporter {
@@ -32,7 +35,12 @@ class WarningKeeper final : public Reporter {
 /// The state at step 0 with other velocities, as the checkpoint that the job goes on from.
 Checkpoint prepared(const Scene& scene, const StabilityBench::Prepare& prepare) {
   Checkpoint start = Simulation(scene, {}).checkpoint();
-  prepare(start.solver.particles);
+  Particles& particles = start.solver.particles;
+  prepare(particles);
+  if (scene.method.integrator == Integrator::modified_leap_frog) {
+    particles.vx_half = particles.vx;
+    particles.vy_half = particles.vy;
+  }
   const Solver solver(scene.method, start.solver, create_particles(scene).walls, {});
   start.guards = initial_baselines(scene.method, start.solver, solver.energy());
   return start;
@@ -49,10 +57,10 @@ const Series& CaseRun::sensor(std::string_view name) const {
   throw std::logic_error(fmt::format("the case has no sensor {}", name));
 }
 
-CaseRun StabilityBench::run(const nlohmann::json& scene, StabilityCheck stability,
-                            const Prepare& prepare) {
+CaseRun StabilityBench::run(const Json& scene, StabilityCheck stability, const Prepare& prepare) {
   CaseRun run;
-  const std::string text = scene.dump(2) + "\n";
+  const Json whole = scene.contains("numerics") ? scene : with_scheme(scene, scheme_);
+  const std::string text = whole.dump(2) + "\n";
   ParseResult parsed = parse_scene(text, stability);
   if (!parsed.scene) {
     run.problems = std::move(parsed.problems);

@@ -31,22 +31,24 @@ struct CaseRun {
   [[nodiscard]] const Series& sensor(std::string_view name) const;
 };
 
-/// Runs scenes of the suite as ordinary jobs, each in a folder of its own.
+/// Runs scenes of the suite as ordinary jobs, each in a folder of its own, with one scheme.
 class StabilityBench {
  public:
-  StabilityBench(std::filesystem::path folder, SuiteForm form)
-      : folder_(std::move(folder)), form_(form) {}
+  StabilityBench(std::filesystem::path folder, SuiteForm form, nlohmann::json scheme)
+      : folder_(std::move(folder)), form_(form), scheme_(std::move(scheme)) {}
 
   /// Changes the particles of a scene before its first step: velocities that a scene cannot say.
   using Prepare = std::function<void(Particles&)>;
 
-  /// Runs `scene` to its end or failure. `stability` skip: also what linear analysis refuses.
+  /// Runs `scene` to its end or failure, with the bench's scheme unless it has numerics of its own.
+  /// `stability` skip: also what linear analysis refuses.
   /// Throws StorageError; std::runtime_error when a signal asks to stop.
   [[nodiscard]] CaseRun run(const nlohmann::json& scene,
                             StabilityCheck stability = StabilityCheck::refuse,
                             const Prepare& prepare = {});
 
   [[nodiscard]] SuiteForm form() const { return form_; }
+  [[nodiscard]] const nlohmann::json& scheme() const { return scheme_; }
   /// `quick` or `full`, as the form is.
   template <class T>
   [[nodiscard]] T pick(T quick, T full) const {
@@ -56,6 +58,7 @@ class StabilityBench {
  private:
   std::filesystem::path folder_;
   SuiteForm form_;
+  nlohmann::json scheme_;
   int runs_ = 0;
 };
 

@@ -59,7 +59,7 @@ bool CaseResult::met() const {
 
 std::vector<StabilityCase> all_cases() {
   std::vector<StabilityCase> all;
-  for (const auto cases : {table_cases(), flow_cases(), extreme_cases()}) {
+  for (const auto cases : {table_cases(), drop_cases(), flow_cases(), extreme_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -36,13 +36,15 @@ CaseResult tall_dam(StabilityBench& b) {
 CaseResult wide_dam(StabilityBench& b) {
   return end_of(b, dam_break("column-50-1", 1.0, 0.02, b.pick(5, 20), b.pick(10.0, 60.0)));
 }
-CaseResult per_height(StabilityBench& b, double count, double time) {
-  return end_of(b, dam_break(fmt::format("per-height-{:g}", count), 0.5, 0.5, count, time));
+CaseResult per_height_2(StabilityBench& b) {
+  return end_of(b, dam_break("per-height-2", 0.5, 0.5, 2, 10));
 }
-CaseResult per_height_2(StabilityBench& b) { return per_height(b, 2, 10); }
-CaseResult per_height_4(StabilityBench& b) { return per_height(b, 4, 10); }
+CaseResult per_height_4(StabilityBench& b) {
+  return end_of(b, dam_break("per-height-4", 0.5, 0.5, 4, 10));
+}
+/// A quarter as wide as high, so that there are 40 000 particles and not four times as many.
 CaseResult per_height_many(StabilityBench& b) {
-  return per_height(b, b.pick(40, 400), b.pick(2.0, 4.0));
+  return end_of(b, dam_break("per-height-many", 0.125, 0.5, b.pick(10, 100), 2.0));
 }
 
 CaseResult with_gravity(StabilityBench& b, std::string_view name, double factor) {
@@ -134,7 +136,7 @@ constexpr std::array kCases{
     StabilityCase{"density-1e5", "dam break of 1e5 kg/m^3", kGate, density_high},
     StabilityCase{"tank-1mm", "dam break in a tank of 1 mm", kGate, tank_1mm},
     StabilityCase{"tank-1km", "dam break in a tank of 1 km", kGate, tank_1km},
-    StabilityCase{"film-1mm", "film of 1 mm at rest", kGate, film_1mm},
+    StabilityCase{"film-1mm", "film of 1 mm at rest", kGate, film_1mm, kLifted},
     StabilityCase{"jet-corner", "jet that hits a corner", kGate, jet_in_corner},
     StabilityCase{"drop-on-film", "drop that falls on a film", kGate, drop_on_film},
     StabilityCase{"column-obstacle", "column that falls onto an obstacle", kGate,

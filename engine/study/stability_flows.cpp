@@ -1,4 +1,4 @@
-// Drops, waves, impacts and the smallest fluids.
+// Waves, impacts and the smallest fluids.
 
 #include <fmt/format.h>
 
@@ -15,60 +15,6 @@ namespace sluice {
 namespace {
 
 using Json = nlohmann::json;
-
-/// A fluid in empty space: no tank, no gravity.
-Json in_space(std::string_view name, Json shape, double spacing, double sound, double end) {
-  shape["pressure"] = "zero";
-  Json scheme = recommended_scheme();
-  scheme.erase("wall_pressure");
-  return {{"name", name},
-          {"fluid", Json::array({std::move(shape)})},
-          {"material", {{"sound_speed", sound}}},
-          {"resolution", {{"spacing", spacing}}},
-          {"numerics", scheme},
-          {"sensors", {{{"name", "energy"}, {"kind", "energy"}, {"interval", end / 100}}}},
-          {"end_time", end}};
-}
-
-double mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return sum / static_cast<double>(values.size());
-}
-
-/// Semi-axis along y over the radius at A t: a drop of v = A (-x, y) keeps its area and, since
-/// nothing acts on it, its kinetic energy: with b = R s, a = R/s, A^2 2 = s'^2 (1 + s^-4)
-/// (Monaghan 1994).
-double drop_stretch(double a_t) {
-  constexpr int kSteps = 1000;
-  const auto rate = [](double s) { return std::sqrt(2.0 / (1.0 + std::pow(s, -4))); };
-  double s = 1.0;
-  for (int n = 0; n < kSteps; ++n) {
-    const double half = s + 0.5 * a_t / kSteps * rate(s);
-    s += a_t / kSteps * rate(half);
-  }
-  return s;
-}
-
-CaseResult elliptical_drop(StabilityBench& bench) {
-  const double dx = 1.0 / bench.pick(15, 40);
-  double at_start = 1.0;
-  const CaseRun run =
-      bench.run(in_space("elliptical-drop", circle(Vec::Zero(), 1.0), dx, 15.0, 0.8),
-                StabilityCheck::refuse, [&](Particles& p) {
-                  for (std::size_t i = 0; i < p.size(); ++i) {
-                    p.vx[i] = -p.x[i];
-                    p.vy[i] = p.y[i];
-                  }
-                  at_start = mean_square(p.y);
-                });
-  CaseResult result = result_of(run, Verdict::stable, Verdict::stable_with_warnings);
-  if (!run.completed()) return result;
-  const double stretch = std::sqrt(mean_square(run.last->solver.particles.y) / at_start);
-  const double exact = drop_stretch(run.last->solver.time);
-  result.figures.push_back({"axis", std::abs(stretch / exact - 1.0), 0.02});
-  return result;
-}
 
 double angular_momentum(const Particles& p) {
   double sum = 0.0;
@@ -155,14 +101,16 @@ CaseResult standing_wave(StabilityBench& bench) {
   return result;
 }
 
+/// Falls until most of the drop has met the floor. Its jets are five times as fast as the drop: the
+/// tank is so wide that they meet no wall.
 CaseResult droplet_at(StabilityBench& bench, double mach, Verdict expected) {
   constexpr double kSound = 20.0;
   const double dx = 0.1 / bench.pick(15, 40);
-  Json drop = circle(Vec(0.5, 0.12), 0.1);
+  Json drop = circle(Vec(1.5, 0.12), 0.1);
   drop["velocity"] = {0.0, -mach * kSound};
-  const CaseRun run = bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec(1, 0.5),
-                                           Json::array({drop}), dx, kSound, 0.4 / (mach * kSound)));
-  return result_of(run, expected);
+  return result_of(bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec(3.0, 0.5),
+                                        Json::array({drop}), dx, kSound, 0.2 / (mach * kSound))),
+                   expected);
 }
 CaseResult droplet_01(StabilityBench& b) {
   return droplet_at(b, 0.1, Verdict::stable_with_warnings);
@@ -176,28 +124,28 @@ CaseResult one_particle_film(StabilityBench& bench) {
   water.width = 40;
   water.per_depth = 1;
   water.time = 50;
-  const CaseRun run = bench.run(still_water("one-particle-film", water, recommended_scheme()));
+  const CaseRun run = bench.run(still_water("one-particle-film", water));
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
 
 CaseResult half_jitter(StabilityBench& bench) {
-  Json scene = still_water("jitter-half", {}, recommended_scheme());
+  Json scene = still_water("jitter-half", {});
   scene["jitter"] = {{"amplitude", 0.5}};
   return result_of(bench.run(scene), Verdict::stable, Verdict::stable_with_warnings);
 }
 
 /// A pair at one place has no direction to part in: the others must move them, without a NaN.
 CaseResult coincident_particles(StabilityBench& bench) {
-  const CaseRun run = bench.run(still_water("coincident", {}, recommended_scheme()),
-                                StabilityCheck::refuse, [](Particles& p) {
-                                  p.x[210] = p.x[211];
-                                  p.y[210] = p.y[211];
-                                });
+  const CaseRun run =
+      bench.run(still_water("coincident", {}), StabilityCheck::refuse, [](Particles& p) {
+        p.x[210] = p.x[211];
+        p.y[210] = p.y[211];
+      });
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
 
 CaseResult overlapping_regions(StabilityBench& bench) {
-  Json scene = still_water("overlap", {}, recommended_scheme());
+  Json scene = still_water("overlap", {});
   scene["fluid"].push_back(scene["fluid"][0]);
   return result_of(bench.run(scene), Verdict::rejected);
 }
@@ -218,7 +166,7 @@ CaseResult free_fall(StabilityBench& bench) {
 }
 
 CaseResult absurd_values(StabilityBench& bench) {
-  const Json good = still_water("absurd", {}, recommended_scheme());
+  const Json good = with_scheme(still_water("absurd", {}), bench.scheme());
   double accepted = 0;
   CaseResult result;
   for (const auto& [pointer, value] :
@@ -248,8 +196,6 @@ CaseResult absurd_values(StabilityBench& bench) {
 }
 
 constexpr std::array kCases{
-    StabilityCase{"elliptical-drop", "drop of v = A (-x, y), to A t = 0.8", "axis within 2 %",
-                  elliptical_drop},
     StabilityCase{"rotating-patch", "rotating square patch", "angular momentum to 1e-3",
                   rotating_patch},
     StabilityCase{"standing-wave", "first sloshing mode, a = H/20", "period within 2 %",
@@ -258,7 +204,7 @@ constexpr std::array kCases{
     StabilityCase{"droplet-mach-0.5", "drop on a floor at 0.5 c", "failed", droplet_05},
     StabilityCase{"droplet-mach-1", "drop on a floor at c", "failed", droplet_1},
     StabilityCase{"one-particle-film", "one layer of particles at rest", "stable",
-                  one_particle_film},
+                  one_particle_film, kLifted},
     StabilityCase{"jitter-half", "particles displaced by up to half their distance", "stable",
                   half_jitter},
     StabilityCase{"coincident", "two particles at one place", "stable", coincident_particles},

@@ -54,26 +54,46 @@ std::string picture_svg(const std::vector<Dot>& dots) {
   return svg + "</svg>";
 }
 
-std::size_t count_met(const std::vector<JudgedCase>& all) {
-  return static_cast<std::size_t>(
-      std::count_if(all.begin(), all.end(), [](const JudgedCase& j) { return j.result.met(); }));
+std::string_view standing(const JudgedCase& judged) {
+  if (judged.result.met()) return "met";
+  return judged.acceptable() ? "known" : "MISS";
 }
 
 }  // namespace
 
+SuiteTally tally(const std::vector<JudgedCase>& all) {
+  SuiteTally sum;
+  for (const JudgedCase& judged : all) {
+    if (judged.result.met()) {
+      ++sum.met;
+    } else {
+      ++(judged.acceptable() ? sum.known : sum.missed);
+    }
+  }
+  return sum;
+}
+
+std::string tally_text(const SuiteTally& t) {
+  std::string text = fmt::format("{} of {} gates met", t.met, t.met + t.known + t.missed);
+  if (t.known > 0) text += fmt::format(", {} missed for the causes named", t.known);
+  if (t.missed > 0) text += fmt::format(", {} missed", t.missed);
+  return text;
+}
+
 std::string suite_line(const JudgedCase& judged) {
   const CaseResult& r = judged.result;
   std::string line =
-      fmt::format("{:<4} {:<18} {:<21} {:>6.2f} s  {}", r.met() ? "met" : "MISS",
-                  judged.subject.name, to_string(r.verdict), r.seconds, figures_text(r));
-  if (!r.met()) line += fmt::format("\n     gate: {}", judged.subject.gate);
-  if (!r.reason.empty()) line += fmt::format("\n     {}", r.reason);
+      fmt::format("{:<5} {:<18} {:<21} {:>6.2f} s  {}", standing(judged), judged.subject.name,
+                  to_string(r.verdict), r.seconds, figures_text(r));
+  if (!r.met()) line += fmt::format("\n      gate: {}", judged.subject.gate);
+  if (!r.met() && !judged.cause.empty()) line += fmt::format("\n      cause: {}", judged.cause);
+  if (!r.reason.empty()) line += fmt::format("\n      {}", r.reason);
   return line;
 }
 
 Json suite_json(const std::vector<JudgedCase>& all) {
   Json cases = Json::array();
-  for (const auto& [subject, result] : all) {
+  for (const auto& [subject, result, cause] : all) {
     Json figures = Json::array();
     for (const Figure& f : result.figures) {
       figures.push_back(
@@ -83,32 +103,36 @@ Json suite_json(const std::vector<JudgedCase>& all) {
                      {"about", subject.about},
                      {"gate", subject.gate},
                      {"met", result.met()},
+                     {"cause", result.met() || cause.empty() ? Json(nullptr) : Json(cause)},
                      {"verdict", verdict_json(result)},
                      {"figures", figures},
                      {"seconds", result.seconds}});
   }
-  return {{"met", count_met(all) == all.size()}, {"cases", cases}};
+  const SuiteTally sum = tally(all);
+  return {{"met", sum.met}, {"known", sum.known}, {"missed", sum.missed}, {"cases", cases}};
 }
 
 std::string suite_html(const std::vector<JudgedCase>& all) {
   std::string rows;
-  for (const auto& [subject, result] : all) {
+  for (const JudgedCase& judged : all) {
+    const auto& [subject, result, cause] = judged;
+    const std::string why = result.met() || cause.empty() ? "" : "<br>" + escaped(cause);
     rows += fmt::format(
         "<tr class=\"{}\"><td>{}</td><td><b>{}</b><br>{}</td><td>{}</td><td>{}</td><td>{}</td>"
         "<td>{}</td></tr>\n",
-        result.met() ? "met" : "miss", result.met() ? "met" : "missed", escaped(subject.name),
+        judged.acceptable() ? "met" : "miss", standing(judged), escaped(subject.name),
         escaped(subject.about), to_string(result.verdict),
         escaped(figures_text(result)) + "<br><small>" + escaped(result.reason) + "</small>",
-        escaped(subject.gate), picture_svg(result.picture));
+        escaped(subject.gate) + why, picture_svg(result.picture));
   }
   return fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Sluice stability</title>\n"
       "<style>body{{font:14px sans-serif;margin:2em}}td,th{{padding:6px;text-align:left;"
       "vertical-align:top;border-bottom:1px solid #ccc}}.miss td:first-child{{color:#b00020;"
-      "font-weight:bold}}</style>\n<h1>Stability: {} of {} gates met</h1>\n<table><tr><th></th>"
+      "font-weight:bold}}</style>\n<h1>Stability: {}</h1>\n<table><tr><th></th>"
       "<th>case</th><th>verdict</th><th>figures</th><th>gate</th><th>last state, colour is speed"
       "</th></tr>\n{}</table></html>\n",
-      count_met(all), all.size(), rows);
+      tally_text(tally(all)), rows);
 }
 
 }  // namespace sluice

@@ -19,21 +19,47 @@ std::string probe_name(std::size_t index) { return "p" + std::to_string(index); 
 }  // namespace
 
 Json recommended_scheme() {
-  return {{"kernel", "wendland_c2"},
-          {"integrator", "kick_drift_kick"},
-          {"courant", 1.0},
-          {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
-          {"artificial_viscosity", {{"alpha", 0.02}}},
-          {"wall_pressure", "clamped"}};
+  return {{"resolution", {{"smoothing_ratio", 1.5}}},
+          {"numerics",
+           {{"kernel", "wendland_c2"},
+            {"integrator", "kick_drift_kick"},
+            {"courant", 1.0},
+            {"precision", "mixed"},
+            {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
+            {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}}},
+            {"wall_friction", {{"alpha", 0.02}, {"epsilon", 0.01}}},
+            {"wall_pressure", "clamped"}}}};
 }
 
 Json paper_scheme() {
-  return {{"kernel", "truncated_gaussian"},
-          {"integrator", "modified_leap_frog"},
-          {"courant", 0.25},
-          {"density_diffusion", {{"kind", "molteni_colagrossi"}, {"delta", 0.1}}},
-          {"artificial_viscosity", {{"alpha", 0.02}}},
-          {"reinitialisation", {{"interval", 20}}}};
+  return {{"resolution", {{"smoothing_ratio", 1.0}}},
+          {"numerics",
+           {{"kernel", "truncated_gaussian"},
+            {"integrator", "modified_leap_frog"},
+            {"courant", 0.25},
+            {"precision", "mixed"},
+            {"density_diffusion", {{"kind", "molteni_colagrossi"}, {"delta", 0.1}}},
+            {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}}},
+            {"wall_pressure", "extrapolated"},
+            {"reinitialisation", {{"interval", 20}}}}}};
+}
+
+Json scheme_of(const Json& scene) {
+  Json scheme{{"numerics", scene.value("numerics", Json::object())}};
+  const Json resolution = scene.value("resolution", Json::object());
+  if (resolution.contains("smoothing_ratio")) {
+    scheme["resolution"]["smoothing_ratio"] = resolution["smoothing_ratio"];
+  }
+  return scheme;
+}
+
+Json with_scheme(Json scene, const Json& scheme) {
+  scene.merge_patch(scheme);
+  if (scene.contains("tank")) return scene;
+  for (const char* wall_term : {"wall_pressure", "wall_friction"}) {
+    scene["numerics"].erase(wall_term);
+  }
+  return scene;
 }
 
 Json rectangle(Vec corner, Vec size) {
@@ -52,12 +78,21 @@ Json tank_scene(std::string_view name, Vec size, Json fluid, double spacing, dou
           {"gravity", {0.0, -kGravity}},
           {"material", {{"sound_speed", sound}}},
           {"resolution", {{"spacing", spacing}}},
-          {"numerics", recommended_scheme()},
           {"sensors", {{{"name", "energy"}, {"kind", "energy"}, {"interval", end_time / 200}}}},
           {"end_time", end_time}};
 }
 
-Json still_water(std::string_view name, const StillWater& w, const Json& numerics) {
+Json in_space(std::string_view name, Json shape, double spacing, double sound, double end_time) {
+  shape["pressure"] = "zero";
+  return {{"name", name},
+          {"fluid", Json::array({std::move(shape)})},
+          {"material", {{"sound_speed", sound}}},
+          {"resolution", {{"spacing", spacing}}},
+          {"sensors", {{{"name", "energy"}, {"kind", "energy"}, {"interval", end_time / 100}}}},
+          {"end_time", end_time}};
+}
+
+Json still_water(std::string_view name, const StillWater& w) {
   const double wave = std::sqrt(w.gravity * w.depth);
   const double end = w.time * w.depth / wave;
   const Vec size = w.depth * Vec(w.width, 1.0);
@@ -66,7 +101,6 @@ Json still_water(std::string_view name, const StillWater& w, const Json& numeric
                           w.sound_ratio * wave, end);
   scene["gravity"] = {0.0, -w.gravity};
   scene["material"]["density"] = w.density;
-  scene["numerics"] = numerics;
   for (std::size_t i = 0; i < kProbeDepths.size(); ++i) {
     const Vec place(0.5 * size.x(), w.depth * (1.0 - kProbeDepths[i]));
     scene["sensors"].push_back({{"name", probe_name(i)},

@@ -8,11 +8,18 @@
 
 namespace sluice {
 
-/// The scheme that the suite holds to its gates: kick-drift-kick at C = 1, Fourtakas diffusion
-/// delta 0.1, viscosity alpha 0.02, wall pressure not below zero.
+// A scheme is the part of a scene that says how, not what: {numerics, resolution:
+// {smoothing_ratio}}.
+
+/// What the suite holds to its gates unless another is asked for: Wendland kernel with h = 1.5 dx,
+/// kick-drift-kick at C = 1, Fourtakas diffusion, wall friction, wall pressure not below zero.
 [[nodiscard]] nlohmann::json recommended_scheme();
-/// The paper's: modified leap-frog at C = 0.25, delta 0.1, alpha 0.02, Shepard every 20 steps.
+/// The paper's: Gaussian with h = dx, modified leap-frog at C = 0.25, eq. 7, eq. 10 every 20 steps.
 [[nodiscard]] nlohmann::json paper_scheme();
+/// That of a scene.
+[[nodiscard]] nlohmann::json scheme_of(const nlohmann::json& scene);
+/// The scene with the scheme; without its wall terms where there is no tank.
+[[nodiscard]] nlohmann::json with_scheme(nlohmann::json scene, const nlohmann::json& scheme);
 
 /// Water over the whole width of a tank, in units of its depth H.
 struct StillWater {
@@ -24,9 +31,9 @@ struct StillWater {
   double sound_ratio = 14.2;  ///< c / sqrt(g H)
   double time = 6.0;          ///< end, in sqrt(H/g)
 };
-/// With pressure sensors at H/4, H/2 and 3H/4 in the middle, `energy` and `surface`.
-[[nodiscard]] nlohmann::json still_water(std::string_view name, const StillWater& water,
-                                         const nlohmann::json& numerics);
+/// Without a scheme, like all scenes here. With pressure sensors at H/4, H/2 and 3H/4 in the
+/// middle, `energy` and `surface`.
+[[nodiscard]] nlohmann::json still_water(std::string_view name, const StillWater& water);
 /// Relative L2 of the pressures of still_water() against rho g times the depth, over rho g H, from
 /// `from` of the end time on.
 [[nodiscard]] double pressure_error(const CaseRun& run, const StillWater& water, double from);
@@ -34,6 +41,9 @@ struct StillWater {
 /// A tank with an open top and the given fluid; lengths in m, gravity 9.81, sound speed `sound`.
 [[nodiscard]] nlohmann::json tank_scene(std::string_view name, Vec size, nlohmann::json fluid,
                                         double spacing, double sound, double end_time);
+/// A fluid in empty space that starts without pressure: no tank, no gravity.
+[[nodiscard]] nlohmann::json in_space(std::string_view name, nlohmann::json shape, double spacing,
+                                      double sound, double end_time);
 [[nodiscard]] nlohmann::json rectangle(Vec corner, Vec size);
 [[nodiscard]] nlohmann::json circle(Vec center, double radius);
 

@@ -359,6 +359,38 @@ class Failures(Sandbox):
         report = json.loads(self.expect(3, "validate", self.write_scene(broken), "--json").stdout)
         self.assertGreaterEqual(len(report["problems"]), 2)
 
+    def test_regions_that_overlap_are_a_problem_for_every_verb(self):
+        path = self.write_scene(scene(fluid=2 * scene()["fluid"]))
+        for verb in ("run", "plan", "validate"):
+            self.assertIn("/fluid/1", self.expect(3, verb, path).stderr)
+        report = json.loads(self.expect(3, "validate", path, "--json").stdout)
+        self.assertFalse(report["valid"])
+        self.assertEqual(report["problems"][0]["pointer"], "/fluid/1")
+
+    def test_the_stability_suite_names_what_it_does_not_know(self):
+        result = self.expect(2, "stability", "stil-tank")
+        self.assertIn("there is no case stil-tank: did you mean \"still-tank\"", result.stderr)
+        self.expect(3, "stability", "free-fall", "--scheme", "nowhere.json")
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine" / "thesis.txt").write_text("years of work")
+        self.assertIn("not empty", self.expect(2, "stability", "--folder", "mine").stderr)
+
+    def test_the_stability_suite_leaves_a_table_and_its_files(self):
+        files = ["--json", "s.json", "--html", "s.html", "--folder", "kept"]
+        result = self.expect(0, "stability", "--quick", "free-fall", "overlap", *files)
+        self.assertIn("2 of 2 gates met", result.stdout)
+        cases = json.loads((self.folder / "s.json").read_text())["cases"]
+        self.assertEqual([case["name"] for case in cases], ["free-fall", "overlap"])
+        self.assertIn("free-fall", (self.folder / "s.html").read_text())
+        self.assertTrue((self.folder / "kept" / cases[0]["verdict"]["checkpoint"]).exists())
+
+    def test_the_stability_suite_fails_for_a_scheme_that_misses_a_gate(self):
+        # Molteni-Colagrossi and Shepard lift a film of one layer of particles.
+        paper = scene()["numerics"] | {"kernel": "truncated_gaussian"}
+        path = self.write_scene(scene(numerics=paper))
+        result = self.expect(4, "stability", "--quick", "one-particle-film", "--scheme", path)
+        self.assertIn("0 of 1 gates met, 1 missed", result.stdout)
+
     def test_usage_errors_exit_with_2_and_one_line(self):
         for arguments in (["rnu"], ["run"], ["run", "nowhere.json"], ["sensors", "."],
                           ["run", self.write_scene(), "--threads", "0"],

@@ -1,0 +1,146 @@
+// Drops in empty space whose shape over time is known.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/scene/initial.hpp"
+#include "engine/sph/solver.hpp"
+#include "engine/study/stability_case.hpp"
+#include "engine/study/stability_scenes.hpp"
+
+namespace sluice {
+namespace {
+
+using Json = nlohmann::json;
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Semi-axis along y over the radius at A t: a drop of v = A (-x, y) keeps its area and, since
+/// nothing acts on it, its kinetic energy: with b = R s, a = R/s, A^2 2 = s'^2 (1 + s^-4)
+/// (Monaghan 1994).
+double drop_stretch(double a_t) {
+  constexpr int kSteps = 1000;
+  const auto rate = [](double s) { return std::sqrt(2.0 / (1.0 + std::pow(s, -4))); };
+  double s = 1.0;
+  for (int n = 0; n < kSteps; ++n) {
+    const double half = s + 0.5 * a_t / kSteps * rate(s);
+    s += a_t / kSteps * rate(half);
+  }
+  return s;
+}
+
+CaseResult elliptical_drop(StabilityBench& bench) {
+  const double dx = 1.0 / bench.pick(15, 40);
+  double at_start = 1.0;
+  const CaseRun run =
+      bench.run(in_space("elliptical-drop", circle(Vec::Zero(), 1.0), dx, 15.0, 0.8),
+                StabilityCheck::refuse, [&](Particles& p) {
+                  for (std::size_t i = 0; i < p.size(); ++i) {
+                    p.vx[i] = -p.x[i];
+                    p.vy[i] = p.y[i];
+                  }
+                  at_start = mean_square(p.y);
+                });
+  CaseResult result = result_of(run, Verdict::stable, Verdict::stable_with_warnings);
+  if (!run.completed()) return result;
+  const double stretch = std::sqrt(mean_square(run.last->solver.particles.y) / at_start);
+  const double exact = drop_stretch(run.last->solver.time);
+  result.figures.push_back({"axis", std::abs(stretch / exact - 1.0), 0.02});
+  return result;
+}
+
+/// A drop of velocity sigma (x, -y) under the acceleration -omega^2 (x, y): with semi-axes a and b,
+///   da/dt = sigma a,  db/dt = -sigma b,  dsigma/dt = (sigma^2 + omega^2) (b^2 - a^2)/(b^2 + a^2)
+/// (Monaghan and Rafiee 2013). Lengths in radii, times in 1/omega.
+struct PulsingDrop {
+  double sigma = 0.5;
+  double a = 1.0;
+  double b = 1.0;
+
+  [[nodiscard]] double pull() const {
+    return (sigma * sigma + 1.0) * (b * b - a * a) / (b * b + a * a);
+  }
+  /// The midpoint rule in ten parts.
+  void advance(double time) {
+    constexpr int kParts = 10;
+    const double half = 0.5 * time / kParts;
+    for (int n = 0; n < kParts; ++n) {
+      const PulsingDrop middle{sigma + half * pull(), a + half * sigma * a, b - half * sigma * b};
+      sigma += 2.0 * half * middle.pull();
+      a += 2.0 * half * middle.sigma * middle.a;
+      b -= 2.0 * half * middle.sigma * middle.b;
+    }
+  }
+};
+
+/// Kinetic energy and that of the central force, per mass.
+double central_energy(const Particles& p) {
+  return 0.5 * (mean_square(p.x) + mean_square(p.y) + mean_square(p.vx) + mean_square(p.vy));
+}
+
+void pull_to_center(Particles& p, double time) {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.vx[i] -= time * p.x[i];
+    p.vy[i] -= time * p.y[i];
+    if (p.vx_half.empty()) continue;
+    p.vx_half[i] -= time * p.x[i];
+    p.vy_half[i] -= time * p.y[i];
+  }
+}
+
+/// No scene has a central force, so it acts between the steps here: split off, to first order in a
+/// step, which is a thousandth of 1/omega.
+CaseResult pulsing_drop(StabilityBench& bench) {
+  const double end = bench.pick(5.0, 14.0);
+  const Json scene = with_scheme(
+      in_space("pulsing-drop", circle(Vec::Zero(), 1.0), 1.0 / bench.pick(15, 40), 15.0, end),
+      bench.scheme());
+  const ParseResult parsed = parse_scene(scene.dump());
+  CaseRun refused;
+  refused.problems = parsed.problems;
+  if (!parsed.scene) return result_of(refused, Verdict::stable);
+
+  const Method& method = parsed.scene->method;
+  PulsingDrop exact;
+  SolverState state = create_particles(*parsed.scene).state;
+  Particles& p = state.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.vx[i] = exact.sigma * p.x[i];
+    p.vy[i] = -exact.sigma * p.y[i];
+  }
+  const double energy = central_energy(p);
+  const double radius = std::sqrt(mean_square(p.x));
+  double axis_error = 0.0;
+  while (state.time < end) {
+    Solver solver(method, state, {}, {});
+    solver.step();
+    state = solver.state();
+    pull_to_center(p, solver.time_step());
+    exact.advance(solver.time_step());
+    const double axis = std::sqrt(mean_square(p.x)) / radius;
+    axis_error = std::max(axis_error, std::isfinite(axis) ? std::abs(axis - exact.a) : HUGE_VAL);
+    if (!solver.extremes().finite) break;
+  }
+  CaseResult result;
+  result.figures.push_back({"axis", axis_error, 0.08});
+  result.figures.push_back({"energy loss", std::abs(1.0 - central_energy(p) / energy), 0.15});
+  return result;
+}
+
+constexpr std::array kCases{
+    StabilityCase{"elliptical-drop", "drop of v = A (-x, y), to A t = 0.8", "axis within 2 %",
+                  elliptical_drop},
+    StabilityCase{"pulsing-drop", "drop that pulses under a central force",
+                  "axis within 8 %, energy loss at most 15 %", pulsing_drop},
+};
+
+}  // namespace
+
+std::span<const StabilityCase> drop_cases() { return kCases; }
+
+}  // namespace sluice

@@ -1,0 +1,144 @@
+"""A random scene over the whole schema, small enough to run in a moment."""
+
+import math
+
+MOST_STEPS = 400  # of a fluid at rest
+MOST_PARTICLES = 500
+
+
+def log_uniform(dice, low, high):
+    return 10 ** dice.uniform(math.log10(low), math.log10(high))
+
+
+def draw(dice, node):
+    """A value that a node of the schema allows; numbers mostly near their default."""
+    if "enum" in node:
+        return dice.choice(node["enum"])
+    if node["type"] == "boolean":
+        return dice.random() < 0.5
+    if node["type"] == "object":
+        return draw_object(dice, node)
+    low = node.get("minimum", node.get("exclusiveMinimum", 0.0))
+    high = node["maximum"]
+    usual = node.get("default")
+    if usual and dice.random() < 0.7:
+        value = usual * log_uniform(dice, 0.3, 3)
+    else:
+        value = log_uniform(dice, max(low, 1e-3 * high), high)
+    value = min(max(value, low, 1e-6 * high), high)
+    return round(value) if node["type"] == "integer" else value
+
+
+def draw_object(dice, node):
+    required = node.get("required", [])
+    return {key: draw(dice, child) for key, child in node["properties"].items()
+            if key in required or dice.random() < 0.6}
+
+
+def draw_numerics(dice, schema):
+    numerics = draw_object(dice, schema["properties"]["numerics"])
+    # What is unstable by its Courant number is refused: let most be below the limits.
+    step = 0.4 if numerics.get("integrator") != "kick_drift_kick" else 1.2
+    if dice.random() < 0.9:
+        numerics["courant"] = dice.uniform(0.1, 1.0) * step
+    return numerics
+
+
+def point_in(dice, low, high):
+    return [dice.uniform(low[0], high[0]), dice.uniform(low[1], high[1])]
+
+
+def draw_shape(dice, low, high):
+    """Any shape that lies in a box."""
+    half = [dice.uniform(0.1, 0.499) * (high[k] - low[k]) for k in (0, 1)]
+    center = [dice.uniform(low[k] + half[k], high[k] - half[k]) for k in (0, 1)]
+    kind = dice.choice(["rectangle", "rectangle", "circle", "ellipse", "polygon"])
+    if kind == "rectangle":
+        corner = [center[k] - half[k] for k in (0, 1)]
+        if dice.random() < 0.5:
+            corner[1] = low[1]  # on the floor
+        return {"shape": kind, "corner": corner, "size": [2 * h for h in half]}
+    if kind == "circle":
+        return {"shape": kind, "center": center, "radius": min(half)}
+    if kind == "ellipse":
+        return {"shape": kind, "center": center, "semi_axes": half}
+    corners = dice.randint(3, 9)
+    points = []
+    for n in range(corners):
+        angle = 2 * math.pi * (n + dice.uniform(0, 0.8)) / corners
+        reach = dice.uniform(0.3, 1.0)
+        points.append([center[0] + reach * half[0] * math.cos(angle),
+                       center[1] + reach * half[1] * math.sin(angle)])
+    return {"shape": kind, "points": points}
+
+
+def draw_fluid(dice, width, height, sound):
+    regions = []
+    strips = dice.choice([1, 1, 1, 2, 3])  # side by side, so that few overlap
+    for n in range(strips):
+        low, high = [n * width / strips, 0.0], [(n + 1) * width / strips, height]
+        region = draw_shape(dice, low, high)
+        if dice.random() < 0.5:
+            speed = dice.choice([0.01, 0.05, 0.1, 0.2, 0.4, 0.8]) * sound
+            region["velocity"] = point_in(dice, [-speed, -speed], [speed, speed])
+        if dice.random() < 0.5:
+            region["pressure"] = dice.choice(["hydrostatic", "zero"])
+        regions.append(region)
+    return regions
+
+
+def draw_sensors(dice, width, height, end):
+    sensors = []
+    for n in range(dice.randint(0, 6)):
+        kind = dice.choice(["pressure", "arrival", "surface_height", "column_height", "surge_front",
+                            "energy"])
+        sensor = {"name": f"s{n}", "kind": kind,
+                  "interval": dice.choice([0.0, end / 100, end / 7.3])}
+        if kind in ("pressure", "arrival"):
+            sensor["position"] = point_in(dice, [0, 0], [width, height])
+        if kind == "surface_height":
+            sensor["x"] = dice.uniform(0, width)
+        sensors.append(sensor)
+    return sensors
+
+
+def random_scene(dice, schema):
+    length = log_uniform(dice, 1e-3, 1e3)  # m
+    width, height = length * dice.uniform(0.5, 4), length * dice.uniform(0.3, 2)
+    gravity = 0.0 if dice.random() < 0.15 else log_uniform(dice, 1e-3, 1e4)  # m/s^2
+    flow = math.sqrt(gravity * height) if gravity else log_uniform(dice, 1e-3, 1e3)
+    sound = flow * log_uniform(dice, 3, 100)
+    spacing = math.sqrt(width * height / dice.uniform(30, MOST_PARTICLES))
+    numerics = draw_numerics(dice, schema)
+    step = numerics.get("courant", 0.25) * spacing / sound
+    end = step * log_uniform(dice, 3, MOST_STEPS)
+    scene = {
+        "name": "random",
+        "fluid": draw_fluid(dice, width, height, sound),
+        "gravity": [gravity * dice.uniform(-0.3, 0.3), -gravity],
+        "material": {"density": log_uniform(dice, 1e-3, 1e5), "sound_speed": sound},
+        "resolution": {"spacing": spacing},
+        "numerics": numerics,
+        "sensors": draw_sensors(dice, width, height, end),
+        "end_time": end,
+    }
+    if dice.random() < 0.8:
+        scene["tank"] = {"width": width, "height": height * dice.uniform(1.0, 1.5),
+                         "open_top": dice.random() < 0.7}
+    if dice.random() < 0.4:
+        scene["obstacles"] = [draw_shape(dice, [0, 0], [width, height])
+                              for _ in range(dice.randint(1, 3))]
+    if dice.random() < 0.5:
+        scene["resolution"]["smoothing_ratio"] = dice.uniform(0.8, 2.5)
+    if dice.random() < 0.3:
+        scene["jitter"] = {"amplitude": log_uniform(dice, 1e-6, 0.5),
+                           "seed": dice.randrange(10**9)}
+    if dice.random() < 0.15:
+        scene["domain"] = {"min": [-width, -height], "max": [2 * width, 3 * height]}
+    if dice.random() < 0.2:
+        scene["output"] = {"frames": {"interval": end / 3.7}}
+    if dice.random() < 0.3:
+        scene["scales"] = {"height": height, "width": width}
+    if gravity > 0 and dice.random() < 0.2:
+        del scene["material"]["sound_speed"]
+    return scene
