@@ -13,14 +13,15 @@
 namespace sluice {
 namespace {
 
-// A pair list serves until a particle has used up its reach. A particle's reach grows with its
-// speed, so that all use theirs up at about the same time and a few fast ones do not force a sort
-// at each step.
-constexpr double kListLifetime = 5.0;  // h/c
-constexpr double kReachMargin = 1.3;   // of the distance at present speed in that time
-constexpr double kLeastReach = 0.03;   // h
-constexpr double kMostReach = 1.5;     // h
-constexpr double kListSlack = 1e-3;    // lists are longer than the reach by more than any rounding
+// How long pair lists serve changes no bit of a result, for what is beyond the support adds zero.
+// Longer lists serve longer and hold more pairs that are none.
+constexpr double kListLifetime = 15.0;   // h/c
+constexpr double kLeastLeeway = 0.05;    // h
+constexpr double kLeewayPerSpeed = 0.2;  // of the distance at present speed in that time
+constexpr double kListSlack = 1e-3;      // lists are longer by more than any rounding
+
+// The order in memory is state: when it is renewed is a function of the step alone.
+constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 constexpr std::uint32_t kManyNeighbours = 200;
@@ -61,8 +62,8 @@ class Engine final : public Solver::Impl {
   void sort();
   void retire(const std::vector<std::uint32_t>& slots);
   void reorder(const Layout& next);
-  void set_reach();
   void bind();
+  void make_lists();
   void place_sums();
   [[nodiscard]] std::uint32_t most_neighbours();
   [[nodiscard]] std::uint32_t count_most_neighbours() const;
@@ -70,42 +71,54 @@ class Engine final : public Solver::Impl {
   // Passes.
   void step_leap_frog();
   void step_kick_drift_kick();
-  void sort_if_needed();
+  void advance_tracks(double duration);
+  void compare_with_tracks(const ParticleSpan& p, Motion& seen);
+  void keep_lists(const Motion& seen);
+  [[nodiscard]] bool order_due() const;
   void sum_wall_pressure();
   void reinitialise();
-  void run_sweep(typename Sweeps<T>::Sweep loop, const PairList* to_wall);
-  void gather(const ParticleSpan& p, std::span<const SumBlock> blocks);
+  void sum_pairs(typename Sweeps<T>::Sweep loop);
+  void run_sweep(typename Sweeps<T>::Sweep loop);
+  Rates<T> gather(const ParticleSpan& chunk, const SumBlocks& blocks);
+  [[nodiscard]] Rates<T> rates_of(const ParticleSpan& chunk, const SumBlocks& blocks) const;
   void measure();
-  void note_motion();
+  void write_pairs(const ParticleSpan& p);
+  void note_motion(const Motion& seen);
   void choose_time_step();
   [[nodiscard]] bool reinitialisation_due(std::uint64_t step) const;
 
   // Views.
-  [[nodiscard]] std::size_t chunks() const { return (layout.clusters() + kChunk - 1) / kChunk; }
   [[nodiscard]] ParticleSpan span(std::size_t chunk);
   [[nodiscard]] static PairView<T> view(const PairArrays<T>& arrays);
-  [[nodiscard]] Rates<T> rates() const;
+  [[nodiscard]] TracksView<T> tracks() const;
+  template <typename U>
+  [[nodiscard]] static Leeway<U> leeway();
   [[nodiscard]] PairScales scales() const;
   void resize_pairs(PairArrays<T>& arrays, std::size_t slots) const;
 
-  /// Calls body(span, chunk) for every chunk and gathers what each saw.
+  /// Calls body(chunk, seen) for the span of every chunk and merges what each saw.
   template <class Body>
   Motion for_chunks(const Body& body);
+  template <class Body>
+  Motion update_chunks(const Body& body);
+  /// Calls body(block) for parts of a chunk that stay in the first cache from loop to loop.
+  template <class Body>
+  static void for_blocks(const ParticleSpan& chunk, const Body& body);
 
   Grid grid_;
   Sweeps<T> sweeps_;
   ThreadTeam team_;
   TermConstants<T> constants_;
   PairArrays<T> pairs_;
-  AlignedArray<T> density_sum_, x_sum_, y_sum_;
+  PairScales scales_;
+  Tracks<T> tracks_;
+  double elapsed_ = 0.0;                     // since the lists were made, h/c
   std::vector<double> origin_x_, origin_y_;  // per cluster
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
   std::vector<AlignedArray<T>> chunk_sums_;  // of fluid_to_fluid_, per chunk
-  struct Arrival {  // sums that another chunk has for a cluster of this one
-    std::uint32_t chunk, place, cluster;
-  };
+  std::vector<const T*> sums_of_chunks_;
   std::vector<std::vector<Arrival>> arrivals_;  // per chunk, by the chunk they come from
-  Motion motion_;
+  bool outside_ = false;                        // a particle is to be retired
 
   Layout wall_layout_;
   ClusterBounds wall_bounds_;
@@ -146,7 +159,7 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
 template <typename T>
 void Engine<T>::resize_pairs(PairArrays<T>& arrays, std::size_t slots) const {
   for (auto* a : {&arrays.x, &arrays.y, &arrays.u, &arrays.v, &arrays.excess, &arrays.volume,
-                  &arrays.stress, &arrays.reach}) {
+                  &arrays.stress}) {
     a->resize(slots);
   }
   // Molteni-Colagrossi diffuses the excess itself: no field of its own.
@@ -157,8 +170,20 @@ void Engine<T>::resize_pairs(PairArrays<T>& arrays, std::size_t slots) const {
 template <typename T>
 PairView<T> Engine<T>::view(const PairArrays<T>& a) {
   const T* diffused = a.diffused.size() > 0 ? a.diffused.data() : a.excess.data();
-  return {a.x.data(),      a.y.data(), a.u.data(),      a.v.data(),    a.excess.data(),
-          a.volume.data(), diffused,   a.stress.data(), a.reach.data()};
+  return {a.x.data(),      a.y.data(),      a.u.data(), a.v.data(),
+          a.excess.data(), a.volume.data(), diffused,   a.stress.data()};
+}
+
+template <typename T>
+TracksView<T> Engine<T>::tracks() const {
+  return {tracks_.x.data(), tracks_.y.data(), tracks_.u.data(), tracks_.v.data()};
+}
+
+template <typename T>
+template <typename U>
+Leeway<U> Engine<T>::leeway() {
+  constexpr double kPerSpeed = kLeewayPerSpeed * kListLifetime;
+  return {static_cast<U>(kListLifetime), static_cast<U>(kLeastLeeway), static_cast<U>(kPerSpeed)};
 }
 
 template <typename T>
@@ -182,7 +207,6 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
   std::vector<double> slot_x(slots, 0.0);
   std::vector<double> slot_y(slots, 0.0);
   std::vector<double> slot_id(slots, -1.0);
-  const std::vector<double> no_reach(slots, 0.0);
   for (std::size_t s = 0; s < slots; ++s) {
     const std::uint32_t i = wall_layout_.source[s];
     if (i == Layout::kEmpty) continue;
@@ -190,8 +214,10 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
     slot_y[s] = y[i];
     slot_id[s] = id[i];
   }
-  wall_bounds_.assign(team_, grid_, wall_layout_, h, slot_x.data(), slot_y.data(), no_reach.data(),
-                      slot_id.data());
+  wall_bounds_.assign_tiles(team_, grid_, wall_layout_, slot_x.data(), slot_y.data(),
+                            slot_id.data());
+  wall_bounds_.assign_boxes(team_, wall_layout_, method, leeway<double>(),
+                            {slot_x.data(), slot_y.data(), nullptr, nullptr, slot_id.data()});
   if (walls_.diffused.size() > 0) wall_hydrostatic_.assign(slots, 0.0);
   for (std::size_t s = 0; s < slots; ++s) {
     const bool used = slot_id[s] >= 0.0;
@@ -221,7 +247,6 @@ void Engine<T>::load(const SolverState& state) {
   if (fresh) {
     source.x_sorted = source.x;
     source.y_sorted = source.y;
-    source.reach.assign(particle_count, 0.0);
     if (method.integrator == Integrator::modified_leap_frog) {
       source.vx_half = source.vx;
       source.vy_half = source.vy;
@@ -237,23 +262,22 @@ void Engine<T>::load(const SolverState& state) {
   particles = std::move(source);
   reorder(
       sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
-  if (fresh) set_reach();
   bind();
-  measure();
+  // Between sorts nobody counts: a state that is gone on with must not be judged otherwise.
+  if (fresh) extremes.max_neighbours = most_neighbours();
   if (method.integrator == Integrator::kick_drift_kick) {
     sum_wall_pressure();
     if (fresh) start_kick_drift_kick();
-    measure();
   }
+  measure();
 }
 
 /// The acceleration that the first half kick needs.
 template <typename T>
 void Engine<T>::start_kick_drift_kick() {
-  run_sweep(sweeps_.acceleration, wall_count > 0 ? &fluid_to_wall_ : nullptr);
+  run_sweep(sweeps_.acceleration);
   for_chunks([&](const ParticleSpan& p, Motion&) {
-    gather(p, std::array{kXSum, kYSum});
-    sweeps_.updates.kick(p, rates(), 0.0);
+    sweeps_.updates.kick(p, gather(p, kAccelerationSums), 0.0);
   });
 }
 
@@ -263,8 +287,8 @@ ParticleSpan Engine<T>::span(std::size_t chunk) {
   const auto data = [](std::vector<double>& field) {
     return field.empty() ? nullptr : field.data();
   };
-  return {kCluster * kChunk * chunk,
-          std::min(kCluster * kChunk * (chunk + 1), layout.slots()),
+  return {kCluster * layout.chunk_begin(chunk),
+          kCluster * layout.chunk_begin(chunk + 1),
           data(p.x),
           data(p.y),
           data(p.vx),
@@ -275,15 +299,13 @@ ParticleSpan Engine<T>::span(std::size_t chunk) {
           data(p.density_excess_half),
           data(p.ax),
           data(p.ay),
-          data(p.x_sorted),
-          data(p.y_sorted),
-          data(p.reach)};
+          data(p.id)};
 }
 
 template <typename T>
 template <class Body>
 Motion Engine<T>::for_chunks(const Body& body) {
-  std::vector<Motion> seen(chunks());
+  std::vector<Motion> seen(layout.chunks());
   team_.run(seen.size(), [&](std::size_t chunk) { body(span(chunk), seen[chunk]); });
   Motion all;
   for (const Motion& m : seen) all.merge(m);
@@ -291,16 +313,21 @@ Motion Engine<T>::for_chunks(const Body& body) {
 }
 
 template <typename T>
-Rates<T> Engine<T>::rates() const {
-  // sums -> rates: c/h, c^2/h times the volume of a particle in h^2 and the constant of grad W.
-  const double slope_scale = method.kernel == KernelKind::truncated_gaussian
-                                 ? TruncatedGaussian::slope_scale
-                                 : WendlandC2::slope_scale;
-  const double ratio = method.spacing / method.smoothing_length;
-  const double scale = ratio * ratio * slope_scale * method.sound_speed / method.smoothing_length;
-  return {
-      density_sum_.data(),        x_sum_.data(), y_sum_.data(), scale * method.reference_density,
-      scale * method.sound_speed, method.gravity};
+template <class Body>
+Motion Engine<T>::update_chunks(const Body& body) {
+  const PassClock clock(pass_seconds, Pass::update);
+  return for_chunks(body);
+}
+
+template <typename T>
+template <class Body>
+void Engine<T>::for_blocks(const ParticleSpan& chunk, const Body& body) {
+  constexpr std::size_t kBlock = 128;
+  ParticleSpan block = chunk;
+  for (; block.begin < chunk.end; block.begin += kBlock) {
+    block.end = std::min(block.begin + kBlock, chunk.end);
+    body(block);
+  }
 }
 
 template <typename T>
@@ -321,9 +348,29 @@ PairScales Engine<T>::scales() const {
 // ---- order in memory
 // ---------------------------------------------------------------------------------------------
 
+/// Whether particles are to be retired, or their order has served its time.
 template <typename T>
-void Engine<T>::sort_if_needed() {
-  if (motion_.moved || motion_.outside) sort();
+bool Engine<T>::order_due() const {
+  const double steps = std::max(1.0, std::round(kOrderLifetime / method.courant));
+  return outside_ || step_count % static_cast<std::uint64_t>(steps) == 0;
+}
+
+template <typename T>
+void Engine<T>::advance_tracks(double duration) {
+  elapsed_ += duration * method.sound_speed / method.smoothing_length;
+}
+
+template <typename T>
+void Engine<T>::compare_with_tracks(const ParticleSpan& p, Motion& seen) {
+  sweeps_.updates.compare(p, pairs_, tracks(), leeway<T>(), static_cast<T>(elapsed_), seen);
+}
+
+/// New lists where the old ones no longer hold.
+template <typename T>
+void Engine<T>::keep_lists(const Motion& seen) {
+  if (!seen.strayed && elapsed_ <= kListLifetime) return;
+  const PassClock clock(pass_seconds, Pass::sort);
+  make_lists();
 }
 
 template <typename T>
@@ -340,9 +387,16 @@ void Engine<T>::sort() {
   reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id, use));
   particles.x_sorted = particles.x;
   particles.y_sorted = particles.y;
-  set_reach();
   bind();
+  extremes.max_neighbours = most_neighbours();
   ++sort_count;
+  // From here on all is as a solver finds it that goes on with this state: the next step sees wall
+  // pressures summed in this order, and nothing of what left.
+  if (method.integrator == Integrator::kick_drift_kick) sum_wall_pressure();
+  if (gone.empty()) return;
+  const bool finite = extremes.finite;
+  measure();
+  extremes.finite = extremes.finite && finite;
 }
 
 template <typename T>
@@ -362,15 +416,12 @@ void Engine<T>::reorder(const Layout& next) {
     std::vector<double>& values = particles.*field.member;
     double empty = 0.0;
     if (field.name == "id") empty = -1.0;
-    if (field.name == "reach") empty = kNoReach;
     // Far from everything, and from each other.
-    const bool place = field.unit == "m" && field.name != "reach";
-    const double apart = place ? 1e8 * method.smoothing_length : 0.0;
+    const double apart = field.unit == "m" ? 1e8 * method.smoothing_length : 0.0;
     std::vector<double> moved(next.slots());
-    constexpr std::size_t kBlock = kCluster * kChunk;
-    team_.run((next.slots() + kBlock - 1) / kBlock, [&](std::size_t block) {
-      const std::size_t end = std::min(next.slots(), kBlock * (block + 1));
-      for (std::size_t s = kBlock * block; s < end; ++s) {
+    team_.run(next.chunks(), [&](std::size_t chunk) {
+      const std::size_t end = kCluster * next.chunk_begin(chunk + 1);
+      for (std::size_t s = kCluster * next.chunk_begin(chunk); s < end; ++s) {
         moved[s] = next.source[s] != Layout::kEmpty ? values[next.source[s]]
                                                     : empty + apart * static_cast<double>(s + 1);
       }
@@ -380,78 +431,80 @@ void Engine<T>::reorder(const Layout& next) {
   layout = next;
 }
 
-template <typename T>
-void Engine<T>::set_reach() {
-  const double h = method.smoothing_length;
-  const double time_span = kReachMargin * kListLifetime * h / method.sound_speed;
-  for_chunks([&](const ParticleSpan& p, Motion&) {
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      if (particles.id[s] < 0.0) continue;
-      const double path = particles.velocity(s).norm() * time_span;
-      // In this order a speed that is not a number gives the longest reach, and the guards see it.
-      particles.reach[s] = std::min(kMostReach * h, kLeastReach * h + path);
-    }
-  });
-}
-
-/// Everything that follows from the order: tiles, bounds, lists and pair arrays.
+/// Everything that follows from the order: tiles, pair arrays and lists.
 template <typename T>
 void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
-  const double h = method.smoothing_length;
-  bounds.assign(team_, grid_, layout, h, particles.x_sorted.data(), particles.y_sorted.data(),
-                particles.reach.data(), particles.id.data());
+  bounds.assign_tiles(team_, grid_, layout, particles.x_sorted.data(), particles.y_sorted.data(),
+                      particles.id.data());
   origin_x_.resize(layout.clusters());
   origin_y_.resize(layout.clusters());
+  scales_ = scales();
   resize_pairs(pairs_, slots);
-  for (auto* sum : {&density_sum_, &x_sum_, &y_sum_}) sum->resize(slots);
-
-  // Lists hold for the sorted places.
-  for_chunks([&](ParticleSpan p, Motion&) {
+  for (auto* a : {&tracks_.x, &tracks_.y, &tracks_.u, &tracks_.v}) a->resize(slots);
+  for_chunks([&](const ParticleSpan& p, Motion&) {
     for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
       const Vec origin = grid_.tile_center(bounds.tile[c]);
       origin_x_[c] = origin.x();
       origin_y_[c] = origin.y();
     }
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      pairs_.reach[s] = static_cast<T>(
-          particles.id[s] < 0.0 ? 0.0 : (particles.reach[s] / h) * (1.0 + kListSlack) + kListSlack);
-    }
-    p.x = particles.x_sorted.data();
-    p.y = particles.y_sorted.data();
-    sweeps_.updates.write_pairs(p, scales(), pairs_);
+    write_pairs(p);
   });
-  const PairRange<T> range{static_cast<T>(method.support_ratio()), constants_.tile_size};
-  const PairSet<T> fluid{layout, bounds, view(pairs_)};
+  make_lists();
+}
+
+/// Pair lists for tracks that begin here and now.
+template <typename T>
+void Engine<T>::make_lists() {
+  elapsed_ = 0.0;
+  for_chunks([&](const ParticleSpan& p, Motion&) {
+    for (std::size_t s = p.begin; s < p.end; ++s) {
+      tracks_.x[s] = pairs_.x[s];
+      tracks_.y[s] = pairs_.y[s];
+      tracks_.u[s] = track_speed(pairs_.u[s]);
+      tracks_.v[s] = track_speed(pairs_.v[s]);
+    }
+  });
+  bounds.assign_boxes(team_, layout, method, leeway<double>(),
+                      {particles.x.data(), particles.y.data(), particles.vx.data(),
+                       particles.vy.data(), particles.id.data()});
+  const PairRange<T> range{static_cast<T>(method.support_ratio() + kListSlack),
+                           constants_.tile_size, leeway<T>()};
+  const PairSet<T> fluid{layout, bounds, tracks()};
   build_pair_list(team_, sweeps_, range, fluid, fluid, fluid_to_fluid_);
   if (wall_count > 0) {
-    const PairSet<T> wall{wall_layout_, wall_bounds_, view(walls_)};
+    const PairSet<T> wall{wall_layout_,
+                          wall_bounds_,
+                          {walls_.x.data(), walls_.y.data(), walls_.u.data(), walls_.v.data()}};
     build_pair_list(team_, sweeps_, range, fluid, wall, fluid_to_wall_);
     build_pair_list(team_, sweeps_, range, wall, fluid, wall_to_fluid_);
   }
   place_sums();
-  extremes.max_neighbours = most_neighbours();
-  for_chunks(
-      [&](const ParticleSpan& p, Motion&) { sweeps_.updates.write_pairs(p, scales(), pairs_); });
 }
 
 /// Room for every chunk's sums, and who brings what to whom.
 template <typename T>
 void Engine<T>::place_sums() {
   const auto& lists = fluid_to_fluid_.chunks;
+  const auto chunk = static_cast<std::uint32_t>(layout.chunk);
+  const std::size_t stride = method.integrator == Integrator::modified_leap_frog
+                                 ? kRateSums.stride
+                                 : kAccelerationSums.stride;
   chunk_sums_.resize(lists.size());
+  sums_of_chunks_.resize(lists.size());
   arrivals_.resize(lists.size());
   for (auto& arrivals : arrivals_) arrivals.clear();
   for (std::uint32_t k = 0; k < lists.size(); ++k) {
-    chunk_sums_[k].resize(kSumStride * lists[k].places());
+    chunk_sums_[k].resize(stride * lists[k].places());
+    sums_of_chunks_[k] = chunk_sums_[k].data();
     auto place = static_cast<std::uint32_t>(lists[k].begin.size() - 1);
     for (const std::uint32_t guest : lists[k].guests) {
-      arrivals_[guest / kChunk].push_back({k, place++, guest % static_cast<std::uint32_t>(kChunk)});
+      arrivals_[guest / chunk].push_back({k, place++, guest % chunk});
     }
   }
 }
 
-/// Exact where lists are long enough to hold too many neighbours, else the bound that they give.
+/// Of one particle when they are many, else 0: a bound from the lists tells most cases.
 template <typename T>
 std::uint32_t Engine<T>::most_neighbours() {
   const auto& lists = fluid_to_fluid_.chunks;
@@ -466,14 +519,15 @@ std::uint32_t Engine<T>::most_neighbours() {
   });
   std::vector<std::uint32_t> most_of(lists.size(), 0);
   team_.run(lists.size(), [&](std::size_t k) {
-    std::array<std::uint32_t, kChunk> all{};
+    std::vector<std::uint32_t> all(layout.chunk, 0);
     for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) all[c] = met[k][c];
     for (const Arrival& a : arrivals_[k]) all[a.cluster] += met[a.chunk][a.place];
     most_of[k] = *std::max_element(all.begin(), all.end()) * static_cast<std::uint32_t>(kCluster);
   });
   std::uint32_t most = 0;
   for (const std::uint32_t m : most_of) most = std::max(most, m);
-  return most <= kManyNeighbours ? most : count_most_neighbours();
+  if (most > kManyNeighbours) most = count_most_neighbours();
+  return most > kManyNeighbours ? most : 0;
 }
 
 /// Over all particles; a neighbour in another tile is left out of this count.
@@ -484,7 +538,7 @@ std::uint32_t Engine<T>::count_most_neighbours() const {
   const T cut_off_sq = static_cast<T>(method.support_ratio() * method.support_ratio());
   for (std::size_t k = 0; k < lists.size(); ++k) {
     for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) {
-      const std::size_t first_i = kCluster * (kChunk * k + c);
+      const std::size_t first_i = kCluster * (layout.chunk_begin(k) + c);
       for (std::uint32_t e = lists[k].begin[c]; e < lists[k].begin[c + 1]; ++e) {
         const std::size_t first_j = kCluster * (lists[k].entries[e] & PairList::kClusterMask);
         for (std::size_t i = first_i; i < first_i + kCluster; ++i) {
@@ -506,40 +560,52 @@ std::uint32_t Engine<T>::count_most_neighbours() const {
 // ------------------------------------------------------------------------------------------------------
 
 template <typename T>
-void Engine<T>::run_sweep(typename Sweeps<T>::Sweep loop, const PairList* to_wall) {
-  team_.run(chunks(), [&](std::size_t chunk) {
+void Engine<T>::sum_pairs(typename Sweeps<T>::Sweep loop) {
+  const PassClock clock(pass_seconds, Pass::pair_sums);
+  run_sweep(loop);
+}
+
+template <typename T>
+void Engine<T>::run_sweep(typename Sweeps<T>::Sweep loop) {
+  team_.run(layout.chunks(), [&](std::size_t chunk) {
     SweepTask<T> task;
     task.self = view(pairs_);
     task.fluid = task.self;
     task.wall = view(walls_);
     task.to_fluid = &fluid_to_fluid_.chunks[chunk];
-    task.to_wall = to_wall != nullptr ? &to_wall->chunks[chunk] : nullptr;
-    task.first_cluster = chunk * kChunk;
-    task.clusters = std::min(kChunk, layout.clusters() - task.first_cluster);
+    task.to_wall = wall_count > 0 ? &fluid_to_wall_.chunks[chunk] : nullptr;
+    task.first_cluster = layout.chunk_begin(chunk);
+    task.clusters = layout.chunk_begin(chunk + 1) - task.first_cluster;
     task.constants = &constants_;
     task.sums = chunk_sums_[chunk].data();
     loop(task);
   });
 }
 
-/// Adds up, in a fixed order, what a sweep left for the particles of a chunk: these blocks of the
-/// sums.
+/// Adds up, in a fixed order, what a sweep left for the particles of a chunk.
 template <typename T>
-void Engine<T>::gather(const ParticleSpan& p, std::span<const SumBlock> blocks) {
-  using Values = Eigen::Array<T, static_cast<int>(kCluster), 1>;
-  const std::size_t chunk = p.begin / (kCluster * kChunk);
-  for (const SumBlock block : blocks) {
-    AlignedArray<T>& sum = block == kDensitySum ? density_sum_ : block == kXSum ? x_sum_ : y_sum_;
-    T* const out = sum.data() + p.begin;
-    const T* const own = chunk_sums_[chunk].data() + block;
-    for (std::size_t c = 0; c < (p.end - p.begin) / kCluster; ++c) {
-      Eigen::Map<Values>(out + kCluster * c) = Eigen::Map<const Values>(own + kSumStride * c);
-    }
-    for (const Arrival& a : arrivals_[chunk]) {
-      const T* const from = chunk_sums_[a.chunk].data() + kSumStride * a.place + block;
-      Eigen::Map<Values>(out + kCluster * a.cluster) += Eigen::Map<const Values>(from);
-    }
-  }
+Rates<T> Engine<T>::gather(const ParticleSpan& chunk, const SumBlocks& blocks) {
+  const std::size_t n = chunk.begin / (kCluster * layout.chunk);
+  T* const own = chunk_sums_[n].data();
+  sweeps_.updates.gather(arrivals_[n], sums_of_chunks_.data(), blocks.stride, own);
+  return rates_of(chunk, blocks);
+}
+
+/// What gather() left.
+template <typename T>
+Rates<T> Engine<T>::rates_of(const ParticleSpan& chunk, const SumBlocks& blocks) const {
+  // c/h, c^2/h times the volume of a particle in h^2 and the constant of grad W.
+  const double slope_scale = method.kernel == KernelKind::truncated_gaussian
+                                 ? TruncatedGaussian::slope_scale
+                                 : WendlandC2::slope_scale;
+  const double ratio = method.spacing / method.smoothing_length;
+  const double scale = ratio * ratio * slope_scale * method.sound_speed / method.smoothing_length;
+  return {chunk_sums_[chunk.begin / (kCluster * layout.chunk)].data(),
+          chunk.begin,
+          blocks,
+          scale * method.reference_density,
+          scale * method.sound_speed,
+          method.gravity};
 }
 
 /// eq. 9, and from it the density, volume and stress of the dummy particles (eq. 3).
@@ -552,8 +618,8 @@ void Engine<T>::sum_wall_pressure() {
     task.self = view(walls_);
     task.fluid = view(pairs_);
     task.to_fluid = &wall_to_fluid_.chunks[chunk];
-    task.first_cluster = chunk * kChunk;
-    task.clusters = std::min(kChunk, wall_layout_.clusters() - task.first_cluster);
+    task.first_cluster = wall_layout_.chunk_begin(chunk);
+    task.clusters = wall_layout_.chunk_begin(chunk + 1) - task.first_cluster;
     task.constants = &constants_;
     task.sums = wall_excess_.data();
     sweeps_.wall_pressure(task);
@@ -584,35 +650,39 @@ bool Engine<T>::reinitialisation_due(std::uint64_t step) const {
 template <typename T>
 void Engine<T>::reinitialise() {
   const PassClock clock(pass_seconds, Pass::reinitialisation);
-  run_sweep(sweeps_.reinitialise, wall_count > 0 ? &fluid_to_wall_ : nullptr);
+  run_sweep(sweeps_.reinitialise);
   for_chunks([&](const ParticleSpan& p, Motion&) {
-    gather(p, std::array{kDensitySum, kXSum});
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      density_sum_[s] = x_sum_[s] > T{0} ? density_sum_[s] / x_sum_[s] : T{0};
-    }
-    sweeps_.updates.reinitialise(p, density_sum_.data(), method.reference_density);
-    sweeps_.updates.write_pairs(p, scales(), pairs_);
+    sweeps_.updates.reinitialise(p, gather(p, kReinitialisationSums), method.reference_density);
+    sweeps_.updates.write_densities(p, scales_, pairs_);
+    if (pairs_.diffused.size() > 0) sweeps_.updates.write_places(p, scales_, pairs_);
   });
 }
 
 template <typename T>
-void Engine<T>::note_motion() {
-  extremes.max_speed = std::sqrt(motion_.speed_sq);
-  extremes.min_density_excess = particle_count > 0 ? motion_.min_density_excess : 0.0;
-  extremes.max_density_excess = particle_count > 0 ? motion_.max_density_excess : 0.0;
-  extremes.finite = motion_.finite;
+void Engine<T>::note_motion(const Motion& seen) {
+  extremes.max_speed = std::sqrt(seen.speed_sq);
+  extremes.min_density_excess = particle_count > 0 ? seen.min_density_excess : 0.0;
+  extremes.max_density_excess = particle_count > 0 ? seen.max_density_excess : 0.0;
+  extremes.finite = seen.finite;
   if (method.integrator == Integrator::kick_drift_kick) {
-    extremes.max_acceleration = std::sqrt(motion_.acceleration_sq);
+    extremes.max_acceleration = std::sqrt(seen.acceleration_sq);
   }
+  outside_ = seen.outside;
 }
 
 template <typename T>
 void Engine<T>::measure() {
-  motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    sweeps_.updates.measure(p, method, 0.0, seen);
+  note_motion(for_chunks([&](const ParticleSpan& p, Motion& seen) {
+    sweeps_.updates.measure(p, method, seen);
     if (p.ax != nullptr) sweeps_.updates.measure_acceleration(p, seen);
-  });
-  note_motion();
+  }));
+}
+
+template <typename T>
+void Engine<T>::write_pairs(const ParticleSpan& p) {
+  sweeps_.updates.write_places(p, scales_, pairs_);
+  sweeps_.updates.write_velocities(p, scales_, pairs_);
+  sweeps_.updates.write_densities(p, scales_, pairs_);
 }
 
 /// eq. 18 with its unit mended, and the force limit: dt <= C h/(c + |v|), dt <= 0.25 sqrt(h/|a|).
@@ -637,33 +707,32 @@ void Engine<T>::step() {
 /// eqs. 13-17.
 template <typename T>
 void Engine<T>::step_leap_frog() {
-  sort_if_needed();
   if (reinitialisation_due(step_count)) {
     sum_wall_pressure();
     reinitialise();
   }
   sum_wall_pressure();
-  {
-    const PassClock clock(pass_seconds, Pass::pair_sums);
-    run_sweep(sweeps_.density_and_acceleration, wall_count > 0 ? &fluid_to_wall_ : nullptr);
-  }
-  const PassClock clock(pass_seconds, Pass::update);
-  const Rates<T> r = rates();
-  const Motion forces = for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    gather(p, std::array{kDensitySum, kXSum, kYSum});
-    sweeps_.updates.measure_rates(p, r, seen);
+  sum_pairs(sweeps_.density_and_acceleration);
+  const Motion forces = update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
+    sweeps_.updates.measure_rates(chunk, gather(chunk, kRateSums), seen);
   });
   extremes.max_acceleration = std::sqrt(forces.acceleration_sq);
   const double last = time_step;
   choose_time_step();
-  motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    sweeps_.updates.leap_frog(p, r, 0.5 * (last + time_step), time_step);
-    sweeps_.updates.measure(p, method, 0.0, seen);
-    sweeps_.updates.write_pairs(p, scales(), pairs_);
+  advance_tracks(time_step);
+  const Motion motion = update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
+    const Rates<T> rates = rates_of(chunk, kRateSums);
+    for_blocks(chunk, [&](const ParticleSpan& p) {
+      sweeps_.updates.leap_frog(p, rates, 0.5 * (last + time_step), time_step);
+      sweeps_.updates.measure(p, method, seen);
+      write_pairs(p);
+      compare_with_tracks(p, seen);
+    });
   });
-  note_motion();
+  note_motion(motion);
   time += time_step;
   ++step_count;
+  order_due() ? sort() : keep_lists(motion);
 }
 
 /// Adami et al. 2012: half kick, half drift, density, half drift, wall pressure, acceleration, half
@@ -671,52 +740,43 @@ void Engine<T>::step_leap_frog() {
 template <typename T>
 void Engine<T>::step_kick_drift_kick() {
   choose_time_step();
-  {
-    const PassClock clock(pass_seconds, Pass::update);
-    motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
+  advance_tracks(0.5 * time_step);
+  keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
+    for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.kick_drift(p, time_step);
-      sweeps_.updates.measure(p, method, 0.5 * time_step, seen);
-      sweeps_.updates.write_pairs(p, scales(), pairs_);
+      sweeps_.updates.write_places(p, scales_, pairs_);
+      sweeps_.updates.write_velocities(p, scales_, pairs_);
+      compare_with_tracks(p, seen);
     });
-  }
-  // A sort retires what has no place any more: it is not a leak if that place is not a number.
-  const bool finite = motion_.finite;
-  sort_if_needed();
-  const PairList* to_wall = wall_count > 0 ? &fluid_to_wall_ : nullptr;
-  {
-    const PassClock clock(pass_seconds, Pass::pair_sums);
-    run_sweep(sweeps_.density, to_wall);
-  }
-  {
-    const PassClock clock(pass_seconds, Pass::update);
-    const Rates<T> r = rates();
-    for_chunks([&](const ParticleSpan& p, Motion&) {
-      gather(p, std::array{kDensitySum});
-      sweeps_.updates.density_drift(p, r, time_step);
-      sweeps_.updates.write_pairs(p, scales(), pairs_);
+  }));
+  sum_pairs(sweeps_.density);
+  advance_tracks(0.5 * time_step);
+  keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
+    const Rates<T> rates = gather(chunk, kDensitySums);
+    for_blocks(chunk, [&](const ParticleSpan& p) {
+      sweeps_.updates.density_drift(p, rates, time_step);
+      sweeps_.updates.write_places(p, scales_, pairs_);
+      sweeps_.updates.write_densities(p, scales_, pairs_);
+      compare_with_tracks(p, seen);
     });
-  }
+  }));
   sum_wall_pressure();
   if (reinitialisation_due(step_count + 1)) {
     reinitialise();
     sum_wall_pressure();
   }
-  {
-    const PassClock clock(pass_seconds, Pass::pair_sums);
-    run_sweep(sweeps_.acceleration, to_wall);
-  }
-  const PassClock clock(pass_seconds, Pass::update);
-  const Rates<T> r = rates();
-  motion_ = for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    gather(p, std::array{kXSum, kYSum});
-    sweeps_.updates.kick(p, r, time_step);
-    sweeps_.updates.measure(p, method, 0.0, seen);
-    sweeps_.updates.measure_acceleration(p, seen);
-  });
-  note_motion();
-  extremes.finite = extremes.finite && finite;
+  sum_pairs(sweeps_.acceleration);
+  note_motion(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
+    const Rates<T> rates = gather(chunk, kAccelerationSums);
+    for_blocks(chunk, [&](const ParticleSpan& p) {
+      sweeps_.updates.kick(p, rates, time_step);
+      sweeps_.updates.measure(p, method, seen);
+      sweeps_.updates.measure_acceleration(p, seen);
+    });
+  }));
   time += time_step;
   ++step_count;
+  if (order_due()) sort();
 }
 
 // ---- for readers
@@ -743,9 +803,8 @@ double Engine<T>::pair_lanes() const {
 
 template <typename T>
 std::size_t Engine<T>::memory_bytes() const {
-  std::size_t bytes = pairs_.bytes() + walls_.bytes() + density_sum_.bytes() + x_sum_.bytes() +
-                      y_sum_.bytes() + fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() +
-                      wall_to_fluid_.bytes();
+  std::size_t bytes = pairs_.bytes() + walls_.bytes() + fluid_to_fluid_.bytes() +
+                      fluid_to_wall_.bytes() + wall_to_fluid_.bytes() + tracks_.bytes();
   for (const auto& sums : chunk_sums_) bytes += sums.bytes();
   for (const auto& arrivals : arrivals_) bytes += arrivals.capacity() * sizeof(Arrival);
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);

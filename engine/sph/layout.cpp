@@ -13,6 +13,12 @@ constexpr double kTile = 512.0;           // smoothing lengths
 constexpr std::size_t kBlock = 1024;      // particles or cells to a task
 constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
 
+// A large chunk has few neighbours in other chunks; its sums should stay in the second cache, and
+// several threads need several chunks.
+constexpr std::size_t kLeastChunks = 8;
+constexpr std::size_t kLeastChunk = 32;  // clusters
+constexpr std::size_t kMostChunk = 512;  // clusters
+
 }  // namespace
 
 Grid::Grid(const Box& domain, double spacing, double smoothing_length, std::size_t particles) {
@@ -104,6 +110,8 @@ Layout sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const do
   }
   layout.strip_begin.push_back(static_cast<std::uint32_t>(layout.source.size() / kCluster));
   fill_cluster(kCluster * kWholeVectors);
+  const std::size_t part = layout.clusters() / kLeastChunks / kWholeVectors * kWholeVectors;
+  layout.chunk = std::clamp(part, kLeastChunk, kMostChunk);
   return layout;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -64,9 +65,14 @@ struct Layout {
 
   std::vector<std::uint32_t> source;       ///< per slot: index of the particle, or kEmpty
   std::vector<std::uint32_t> strip_begin;  ///< first cluster of each strip, and the end
+  std::size_t chunk = 1;                   ///< clusters per chunk, the unit of work of a thread
 
   [[nodiscard]] std::size_t slots() const { return source.size(); }
   [[nodiscard]] std::size_t clusters() const { return source.size() / kCluster; }
+  [[nodiscard]] std::size_t chunks() const { return (clusters() + chunk - 1) / chunk; }
+  [[nodiscard]] std::size_t chunk_begin(std::size_t n) const {
+    return std::min(n * chunk, clusters());
+  }
 };
 
 /// Orders the particles by (strip, x, y, id). The order of the input changes nothing. `use` holds

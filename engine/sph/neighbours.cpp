@@ -7,12 +7,13 @@
 namespace sluice {
 namespace {
 
-// Of sums of bounds and reaches; the bounds themselves are rounded outwards.
+// Of differences of bounds; the bounds themselves are rounded outwards.
 constexpr float kSlack = 1e-3F;
 
-/// In single precision and two steps farther: the value's own rounding, and that of a sum with it.
-float outwards(double value, float towards) {
-  return std::nextafter(std::nextafter(static_cast<float>(value), towards), towards);
+/// In single precision and a little farther: the value's own rounding, and that of a sum with it.
+float outwards(double value, double towards) {
+  constexpr double kRounding = 2.0 * std::numeric_limits<float>::epsilon();
+  return static_cast<float>(value + towards * kRounding * std::abs(value));
 }
 
 std::uint32_t tile_code(const Grid::Tile& i, const Grid::Tile& j) {
@@ -24,46 +25,58 @@ std::uint32_t tile_code(const Grid::Tile& i, const Grid::Tile& j) {
 /// Walks the clusters of `other` beside those of one strip of `self`, left to right.
 class StripSearch {
  public:
-  StripSearch(const Layout& layout, const ClusterBounds& bounds)
-      : layout_(layout), bounds_(bounds) {}
+  StripSearch(const Layout& layout, const ClusterBounds& bounds, float cut_off)
+      : layout_(layout), bounds_(bounds), range_(cut_off + kSlack) {}
 
-  /// Starts at a new strip of `self`: none of its clusters reaches out of [low, high] + margin.
-  /// Strips of `other` before `first_strip` are left out.
-  void start(float low, float high, float margin, std::size_t first_strip) {
+  /// Starts at a new strip of `self`, within [low, high]. Strips of `other` before `first_strip`
+  /// are left out.
+  void start(float low, float high, std::size_t first_strip) {
     rows_.clear();
     const std::size_t strips = layout_.strip_begin.size() - 1;
     for (std::size_t s = first_strip; s < strips; ++s) {
       const std::uint32_t begin = layout_.strip_begin[s];
       const std::uint32_t end = layout_.strip_begin[s + 1];
-      if (begin == end) continue;
-      const float reach = margin + bounds_.strip_reach[s] + kSlack;
-      if (bounds_.strip_y_max[s] < low - reach || bounds_.strip_y_min[s] > high + reach) continue;
-      rows_.push_back({begin, end, reach});
+      if (bounds_.strip_y_max[s] < low - range_ || bounds_.strip_y_min[s] > high + range_) continue;
+      rows_.push_back({begin, end});
     }
   }
 
-  /// Appends the entries for a cluster with bounds [x_min, x_max]; x_min must not fall within a
-  /// strip. Clusters of `other` before `first` are left out.
-  void collect(float x_min, float x_max, float y_min, float y_max, const Grid::Tile& tile,
-               std::size_t first, std::vector<std::uint32_t>& out) {
+  /// Appends the entries for cluster `i` of `self`; later clusters of its strip begin no farther
+  /// left than self.x_min_after[i]. Clusters of `other` before `first` are left out. Returns how
+  /// many of `out` they are.
+  std::size_t collect(const ClusterBounds& self, std::size_t i, std::size_t first,
+                      std::vector<std::uint32_t>& out) {
+    std::size_t found = 0;
+    const float left = self.x_min[i] - range_;
+    const float right = self.x_max[i] + range_;
+    const float low = self.y_min[i] - range_;
+    const float high = self.y_max[i] + range_;
+    const float passed = self.x_min_after[i] - range_;
     for (Row& row : rows_) {
       row.next = std::max(row.next, static_cast<std::uint32_t>(first));
-      while (row.next < row.end && bounds_.x_max[row.next] < x_min - row.reach) ++row.next;
-      for (std::uint32_t j = row.next; j < row.end && bounds_.x_min[j] <= x_max + row.reach; ++j) {
-        if (bounds_.y_min[j] > y_max + row.reach || bounds_.y_max[j] < y_min - row.reach) continue;
-        out.push_back(j | tile_code(tile, bounds_.tile[j]) << PairList::kShiftBit);
+      while (row.next < row.end && bounds_.x_max_before[row.next] < passed) ++row.next;
+      // Room first, so that no entry waits for a branch.
+      std::uint32_t last = row.next;
+      while (last < row.end && bounds_.x_min_after[last] <= right) ++last;
+      if (out.size() < found + (last - row.next)) out.resize(2 * (found + (last - row.next)));
+      for (std::uint32_t j = row.next; j < last; ++j) {
+        out[found] = j | tile_code(self.tile[i], bounds_.tile[j]) << PairList::kShiftBit;
+        const bool near = (bounds_.x_max[j] >= left) & (bounds_.x_min[j] <= right) &
+                          (bounds_.y_max[j] >= low) & (bounds_.y_min[j] <= high);
+        found += near ? 1U : 0U;
       }
     }
+    return found;
   }
 
  private:
   struct Row {
     std::uint32_t next;
     std::uint32_t end;
-    float reach;
   };
   const Layout& layout_;
   const ClusterBounds& bounds_;
+  float range_;
   std::vector<Row> rows_;
 };
 
@@ -96,53 +109,74 @@ void assign_places(std::size_t first, std::size_t count, std::size_t clusters,
   }
 }
 
+constexpr float kHuge = std::numeric_limits<float>::max();
+
+/// A box that is still empty, in smoothing lengths.
+struct Extent {
+  double low = std::numeric_limits<double>::max();
+  double high = -std::numeric_limits<double>::max();
+  void add(double from, double way, double leeway) {
+    low = std::min(low, from + std::min(way, 0.0) - leeway);
+    high = std::max(high, from + std::max(way, 0.0) + leeway);
+  }
+};
+
 }  // namespace
 
-void ClusterBounds::assign(ThreadTeam& team, const Grid& grid, const Layout& layout,
-                           double smoothing_length, const double* x, const double* y,
-                           const double* reach_of, const double* id) {
-  constexpr float kHuge = std::numeric_limits<float>::max();
+void ClusterBounds::assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout,
+                                 const double* x, const double* y, const double* id) {
   const std::size_t clusters = layout.clusters();
-  for (auto* a : {&x_min, &x_max, &y_min, &y_max, &reach}) a->resize(clusters);
   tile.resize(clusters);
-  const auto bound = [&](std::size_t c) {
-    const std::size_t first = kCluster * c;
-    if (id[first] < 0.0) {
-      x_min[c] = y_min[c] = kHuge;
-      x_max[c] = y_max[c] = -kHuge;
-      reach[c] = 0.0F;
-      tile[c] = {};
-      return;
+  team.run(layout.chunks(), [&](std::size_t chunk) {
+    for (std::size_t c = layout.chunk_begin(chunk); c < layout.chunk_begin(chunk + 1); ++c) {
+      const std::size_t first = kCluster * c;
+      tile[c] = id[first] < 0.0 ? Grid::Tile{} : grid.tile({x[first], y[first]});
     }
-    double left = x[first], right = left, bottom = y[first], top = bottom, most = reach_of[first];
-    for (std::size_t s = first + 1; s < first + kCluster && id[s] >= 0.0; ++s) {
-      left = std::min(left, x[s]);
-      right = std::max(right, x[s]);
-      bottom = std::min(bottom, y[s]);
-      top = std::max(top, y[s]);
-      most = std::max(most, reach_of[s]);
-    }
-    tile[c] = grid.tile({x[first], y[first]});
-    x_min[c] = outwards(left / smoothing_length, -kHuge);
-    x_max[c] = outwards(right / smoothing_length, kHuge);
-    y_min[c] = outwards(bottom / smoothing_length, -kHuge);
-    y_max[c] = outwards(top / smoothing_length, kHuge);
-    reach[c] = static_cast<float>(most / smoothing_length);
-  };
-  team.run((clusters + kChunk - 1) / kChunk, [&](std::size_t task) {
-    for (std::size_t c = kChunk * task; c < std::min(clusters, kChunk * (task + 1)); ++c) bound(c);
   });
+}
+
+void ClusterBounds::assign_boxes(ThreadTeam& team, const Layout& layout, const Method& method,
+                                 const Leeway<double>& leeway, const Places& places) {
+  const std::size_t clusters = layout.clusters();
+  for (auto* a : {&x_min, &x_max, &y_min, &y_max, &x_max_before, &x_min_after}) {
+    a->resize(clusters);
+  }
   const std::size_t strips = layout.strip_begin.size() - 1;
   strip_y_min.assign(strips, kHuge);
   strip_y_max.assign(strips, -kHuge);
-  strip_reach.assign(strips, 0.0F);
-  for (std::size_t s = 0; s < strips; ++s) {
-    for (std::uint32_t c = layout.strip_begin[s]; c < layout.strip_begin[s + 1]; ++c) {
+  const double per_h = 1.0 / method.smoothing_length;
+  const double per_c = 1.0 / method.sound_speed;
+  const auto box = [&](std::size_t c) {
+    Extent x;
+    Extent y;
+    for (std::size_t s = kCluster * c; s < kCluster * (c + 1) && places.id[s] >= 0.0; ++s) {
+      const double u = places.vx != nullptr ? track_speed(places.vx[s] * per_c) : 0.0;
+      const double v = places.vy != nullptr ? track_speed(places.vy[s] * per_c) : 0.0;
+      const double off = leeway.least + leeway.per_speed * (std::abs(u) + std::abs(v));
+      x.add(places.x[s] * per_h, leeway.lifetime * u, off);
+      y.add(places.y[s] * per_h, leeway.lifetime * v, off);
+    }
+    const bool used = places.id[kCluster * c] >= 0.0;
+    x_min[c] = used ? outwards(x.low, -1.0) : kHuge;
+    x_max[c] = used ? outwards(x.high, 1.0) : -kHuge;
+    y_min[c] = used ? outwards(y.low, -1.0) : kHuge;
+    y_max[c] = used ? outwards(y.high, 1.0) : -kHuge;
+  };
+  team.run(layout.chunks(), [&](std::size_t chunk) {
+    for (std::size_t c = layout.chunk_begin(chunk); c < layout.chunk_begin(chunk + 1); ++c) box(c);
+  });
+  team.run(strips, [&](std::size_t s) {
+    const std::size_t begin = layout.strip_begin[s];
+    const std::size_t end = layout.strip_begin[s + 1];
+    float right = -kHuge;
+    for (std::size_t c = begin; c < end; ++c) {
+      x_max_before[c] = right = std::max(right, x_max[c]);
       strip_y_min[s] = std::min(strip_y_min[s], y_min[c]);
       strip_y_max[s] = std::max(strip_y_max[s], y_max[c]);
-      strip_reach[s] = std::max(strip_reach[s], reach[c]);
     }
-  }
+    float left = kHuge;
+    for (std::size_t c = end; c-- > begin;) x_min_after[c] = left = std::min(left, x_min[c]);
+  });
 }
 
 template <typename T>
@@ -150,17 +184,17 @@ void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<
                      const PairSet<T>& self, const PairSet<T>& other, PairList& list) {
   const bool mutual = &self == &other;
   const std::size_t clusters = self.layout.clusters();
-  const std::size_t chunks = (clusters + kChunk - 1) / kChunk;
+  const std::size_t chunks = self.layout.chunks();
   list.chunks.resize(chunks);
   team.run(chunks, [&](std::size_t task) {
     PairList::Chunk& chunk = list.chunks[task];
-    const std::size_t first = task * kChunk;
-    const std::size_t count = std::min(kChunk, clusters - first);
+    const std::size_t first = self.layout.chunk_begin(task);
+    const std::size_t count = self.layout.chunk_begin(task + 1) - first;
     chunk.entries.clear();
     chunk.begin.assign(count + 1, 0);
 
     std::vector<std::uint32_t> candidates;
-    StripSearch search(other.layout, other.bounds);
+    StripSearch search(other.layout, other.bounds, static_cast<float>(range.cut_off));
     const ClusterBounds& bounds = self.bounds;
     const auto& strips = self.layout.strip_begin;
     auto strip_end = strips.begin();  // end of the strip of the last cluster
@@ -171,16 +205,13 @@ void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<
       if (strip_end == strips.begin() || c >= *strip_end) {
         strip_end = std::upper_bound(strips.begin(), strips.end(), static_cast<std::uint32_t>(c));
         const auto s = static_cast<std::size_t>(strip_end - strips.begin()) - 1;
-        search.start(bounds.strip_y_min[s], bounds.strip_y_max[s],
-                     static_cast<float>(range.cut_off) + bounds.strip_reach[s], mutual ? s : 0);
+        search.start(bounds.strip_y_min[s], bounds.strip_y_max[s], mutual ? s : 0);
       }
-      candidates.clear();
-      search.collect(bounds.x_min[c], bounds.x_max[c], bounds.y_min[c], bounds.y_max[c],
-                     bounds.tile[c], mutual ? c : 0, candidates);
-      chunk.entries.resize(chunk.begin[n] + candidates.size());
-      const std::size_t kept = sweeps.prune(
-          {self.pairs, other.pairs, range.cut_off, range.tile_size, c, candidates.data(),
-           candidates.size(), chunk.entries.data() + chunk.begin[n]});
+      const std::size_t found = search.collect(bounds, c, mutual ? c : 0, candidates);
+      chunk.entries.resize(chunk.begin[n] + found);
+      const std::size_t kept =
+          sweeps.prune({self.tracks, other.tracks, range.leeway, range.cut_off, range.tile_size, c,
+                        candidates.data(), found, chunk.entries.data() + chunk.begin[n]});
       chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
       chunk.entries.resize(chunk.begin[n + 1]);
     }

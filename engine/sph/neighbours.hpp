@@ -11,17 +11,29 @@
 
 namespace sluice {
 
-/// Extents of the clusters of one set at the last sort, in smoothing lengths, for the search for
-/// neighbours.
+/// Boxes, in smoothing lengths, that the clusters of one set stay in while their particles are
+/// within the leeway of their tracks.
 struct ClusterBounds {
   std::vector<float> x_min, x_max, y_min, y_max;
-  std::vector<float> reach;  ///< largest of the cluster's particles
-  std::vector<Grid::Tile> tile;
-  std::vector<float> strip_y_min, strip_y_max, strip_reach;
+  std::vector<float> x_max_before;  ///< largest x_max of the strip up to the cluster
+  std::vector<float> x_min_after;   ///< least x_min of the strip from the cluster on
+  std::vector<Grid::Tile> tile;     ///< of the sorted places
+  std::vector<float> strip_y_min, strip_y_max;
 
-  /// Positions and reaches per slot in m; empty slots have id < 0.
-  void assign(ThreadTeam& team, const Grid& grid, const Layout& layout, double smoothing_length,
-              const double* x, const double* y, const double* reach_of, const double* id);
+  /// Sorted places per slot in m; empty slots have id < 0.
+  void assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout, const double* x,
+                    const double* y, const double* id);
+
+  /// Where particles are, per slot in m, and their velocities in m/s, null for particles at rest.
+  struct Places {
+    const double* x;
+    const double* y;
+    const double* vx;
+    const double* vy;
+    const double* id;
+  };
+  void assign_boxes(ThreadTeam& team, const Layout& layout, const Method& method,
+                    const Leeway<double>& leeway, const Places& places);
 };
 
 /// A set of particles as the search sees it.
@@ -29,7 +41,7 @@ template <typename T>
 struct PairSet {
   const Layout& layout;
   const ClusterBounds& bounds;
-  PairView<T> pairs;
+  TracksView<T> tracks;
 };
 
 /// Lengths of the search, in h.
@@ -37,10 +49,11 @@ template <typename T>
 struct PairRange {
   T cut_off;
   T tile_size;
+  Leeway<T> leeway;
 };
 
-/// For every cluster of `self` the clusters of `other` that hold a particle within the cut-off plus
-/// both reaches, in memory order. When `self` and `other` are the same object the list is mutual:
+/// For every cluster of `self` the clusters of `other` of which a particle may come within the
+/// cut-off, in memory order. When `self` and `other` are the same object the list is mutual:
 /// it holds those from the cluster itself on. Chunks are independent tasks of the team.
 template <typename T>
 void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,

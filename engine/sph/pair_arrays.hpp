@@ -10,8 +10,6 @@ namespace sluice {
 
 /// Particles per cluster: pair sums run cluster against cluster.
 inline constexpr std::size_t kCluster = 4;
-/// Clusters per chunk: the unit of work of a thread.
-inline constexpr std::size_t kChunk = 128;
 
 /// A growing aligned array whose tail may be read, not used, one vector past the end.
 template <typename T>
@@ -50,11 +48,10 @@ struct PairArrays {
   AlignedArray<T> volume;    ///< V
   AlignedArray<T> diffused;  ///< psi of the density diffusion
   AlignedArray<T> stress;    ///< A
-  AlignedArray<T> reach;     ///< displacement that the pair list allows
 
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
-    for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &stress, &reach}) {
+    for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &stress}) {
       sum += a->bytes();
     }
     return sum;
@@ -90,9 +87,25 @@ struct PairList {
   }
 };
 
-/// Sums of a mutual list, per place: kSumStride values, in blocks of one value per particle.
-inline constexpr std::size_t kSumStride = 4 * kCluster;
-enum SumBlock : std::size_t { kDensitySum = 0, kYSum = kCluster, kXSum = 2 * kCluster };
+/// How the sums of a mutual list lie in memory: `stride` values per place, in blocks of one value
+/// per particle of the cluster. A block that a sweep does not sum is 0.
+struct SumBlocks {
+  std::size_t stride = 0;
+  std::size_t density = 0;
+  std::size_t y = 0;
+  std::size_t x = 0;
+};
+inline constexpr SumBlocks kDensitySums{kCluster, 0, 0, 0};
+inline constexpr SumBlocks kAccelerationSums{2 * kCluster, 0, 0, kCluster};
+inline constexpr SumBlocks kRateSums{4 * kCluster, 0, kCluster, 2 * kCluster};
+/// eq. 10: `density` is the numerator, `x` the divisor.
+inline constexpr SumBlocks kReinitialisationSums{2 * kCluster, 0, 0, kCluster};
+
+/// Sums that a chunk holds for a cluster of another: its `place` there, and the cluster's number in
+/// its own chunk.
+struct Arrival {
+  std::uint32_t chunk, place, cluster;
+};
 
 /// Tile shift codes 0-8: (X_j's tile - X_i's tile) + 1 in each direction, row by row; 4 is the same
 /// tile.

@@ -22,7 +22,6 @@ struct Particles {
   std::vector<double> density_excess_half;  ///< rho - rho_0 half a step earlier, kg/m^3
   std::vector<double> ax, ay;               ///< acceleration, m/s^2
   std::vector<double> x_sorted, y_sorted;   ///< position at the last sort, m
-  std::vector<double> reach;                ///< allowed displacement until the next sort, m
   std::vector<double> id;                   ///< number given at the start; whole, 0 ... N-1
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
@@ -62,7 +61,6 @@ inline constexpr std::array kFields{
     Field{"ay", "m/s^2", "acceleration, vertical", Role::state, CarriedBy::kick_drift_kick, &Particles::ay},
     Field{"x_sorted", "m", "position at the last sort, horizontal", Role::state, CarriedBy::every_scheme, &Particles::x_sorted},
     Field{"y_sorted", "m", "position at the last sort, vertical", Role::state, CarriedBy::every_scheme, &Particles::y_sorted},
-    Field{"reach", "m", "displacement allowed until the next sort", Role::state, CarriedBy::every_scheme, &Particles::reach},
     Field{"id", "1", "number given at the start", Role::state, CarriedBy::every_scheme, &Particles::id},
 };
 // clang-format on

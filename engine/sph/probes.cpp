@@ -34,8 +34,7 @@ Probe front(const Method& method, const Particles& particles) {
 
 template <class Body>
 void FluidProbe::for_each_in(const Box& box, const Body& body) const {
-  // Bounds are those of the last sort, in smoothing lengths; a particle is at most its reach away.
-  // The slack covers their single precision.
+  // The boxes hold their particles, in smoothing lengths; the slack covers single precision.
   const double h = method_.smoothing_length;
   const double slack = 1e-3;
   const double x_min = box.min.x() / h - slack;
@@ -43,15 +42,15 @@ void FluidProbe::for_each_in(const Box& box, const Body& body) const {
   const double y_min = box.min.y() / h - slack;
   const double y_max = box.max.y() / h + slack;
   for (std::size_t strip = 0; strip + 1 < layout_.strip_begin.size(); ++strip) {
-    const double reach = static_cast<double>(bounds_.strip_reach[strip]);
-    if (static_cast<double>(bounds_.strip_y_max[strip]) < y_min - reach) continue;
-    if (static_cast<double>(bounds_.strip_y_min[strip]) > y_max + reach) continue;
-    const auto begin = bounds_.x_max.begin() + layout_.strip_begin[strip];
-    const auto end = bounds_.x_max.begin() + layout_.strip_begin[strip + 1];
-    auto cluster = std::lower_bound(begin, end, static_cast<float>(x_min - reach));
+    if (static_cast<double>(bounds_.strip_y_max[strip]) < y_min) continue;
+    if (static_cast<double>(bounds_.strip_y_min[strip]) > y_max) continue;
+    const auto& before = bounds_.x_max_before;
+    const auto begin = before.begin() + layout_.strip_begin[strip];
+    const auto end = before.begin() + layout_.strip_begin[strip + 1];
+    auto cluster = std::lower_bound(begin, end, static_cast<float>(x_min));
     for (; cluster != end; ++cluster) {
-      const auto c = static_cast<std::size_t>(cluster - bounds_.x_max.begin());
-      if (static_cast<double>(bounds_.x_min[c]) > x_max + reach) break;
+      const auto c = static_cast<std::size_t>(cluster - before.begin());
+      if (static_cast<double>(bounds_.x_min_after[c]) > x_max) break;
       for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
         if (particles_.id[s] >= 0.0) body(s);
       }

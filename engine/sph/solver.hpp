@@ -37,7 +37,8 @@ struct Extremes {
   double min_density_excess = 0.0;   ///< kg/m^3
   double max_density_excess = 0.0;   ///< kg/m^3
   bool finite = true;                ///< no NaN and no infinity in position, velocity and density
-  std::uint32_t max_neighbours = 0;  ///< upper bound seen at the last sort
+  std::uint32_t max_neighbours = 0;  ///< of one particle, counted at a sort
+                                     ///< that finds lists long enough for more than 200, else 0
 };
 
 /// Kinetic, potential and internal energy of the fluid, J per metre of depth; potential against y =

@@ -95,33 +95,35 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V v) {
   hn::StoreU(hn::LoadU(block, to) - sum, block, to);
 }
 
-/// kFirst is kDensitySum or kYSum; the other block is kXSum.
-template <SumBlock kFirst, typename T, class V>
-HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V first, V x) {
-  const typename Blocks<T>::D d;
-  if constexpr (Blocks<T>::lanes == kSumStride) {
-    // All blocks of the place are one vector; those that this sweep does not sum are not read.
-    const V pairs = hn::ConcatLowerLower(d, x, first) + hn::ConcatUpperUpper(d, x, first);
-    hn::StoreU(hn::LoadU(d, to) - (pairs + hn::SwapAdjacentBlocks(pairs)), d, to);
+/// The same for two blocks side by side.
+template <typename T, class V>
+HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V first, V second) {
+  if constexpr (Blocks<T>::lanes == 4 * kCluster) {
+    const hn::Half<typename Blocks<T>::D> half;
+    const auto a = hn::LowerHalf(half, first) + hn::UpperHalf(half, first);
+    const auto b = hn::LowerHalf(half, second) + hn::UpperHalf(half, second);
+    const auto sums = hn::ConcatLowerLower(half, b, a) + hn::ConcatUpperUpper(half, b, a);
+    hn::StoreU(hn::LoadU(half, to) - sums, half, to);
   } else {
-    subtract_from_j(to + kFirst, first);
-    subtract_from_j(to + kXSum, x);
+    subtract_from_j(to, first);
+    subtract_from_j(to + kCluster, second);
   }
 }
 
 template <typename T, class V>
 HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x) {
   const typename Blocks<T>::D d;
-  if constexpr (Blocks<T>::lanes == kSumStride) {
+  if constexpr (Blocks<T>::lanes == kRateSums.stride) {
+    // All blocks of the place are one vector; the last is not read.
     const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
     const V odd = y + hn::ConcatLowerUpper(d, y, y);
     const V sums =
         hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
     hn::StoreU(hn::LoadU(d, to) - sums, d, to);
   } else {
-    subtract_from_j(to + kDensitySum, density);
-    subtract_from_j(to + kYSum, y);
-    subtract_from_j(to + kXSum, x);
+    subtract_from_j(to + kRateSums.density, density);
+    subtract_from_j(to + kRateSums.y, y);
+    subtract_from_j(to + kRateSums.x, x);
   }
 }
 
@@ -141,8 +143,9 @@ struct TileShift {
 
 /// Place in the sums of the particles j of an entry, or of its vector `part`.
 template <typename T>
-HWY_INLINE T* place_of(T* sums, const PairList::Chunk& list, std::size_t entry, std::size_t part) {
-  return sums + kSumStride * list.targets[entry] + part * Blocks<T>::j_lanes;
+HWY_INLINE T* place_of(T* sums, std::size_t stride, const PairList::Chunk& list, std::size_t entry,
+                       std::size_t part) {
+  return sums + stride * list.targets[entry] + part * Blocks<T>::j_lanes;
 }
 
 /// Calls body(slot of j, x_ij/h, y_ij/h, entry, part) for every vector of pairs of cluster c, the
@@ -177,6 +180,9 @@ struct Terms {
   static constexpr bool diffusion = density && kDiffusion;
   static constexpr bool viscosity = acceleration && kViscosity;
   static constexpr bool friction = acceleration && kFriction;
+  static constexpr SumBlocks blocks = !acceleration ? kDensitySums
+                                      : !density    ? kAccelerationSums
+                                                    : kRateSums;
 };
 
 /// What the rate sums need of the particles i of a vector, and the sums.
@@ -224,13 +230,13 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       i.y_sum = i.y_sum + y_j;
     }
     if constexpr (kShare == Share::both) {
-      T* const to = place_of(sums, list, n, part);
+      T* const to = place_of(sums, Terms::blocks.stride, list, n, part);
       if constexpr (Terms::density && Terms::acceleration) {
         subtract_from_j(to, density_j, y_j, x_j);
       } else if constexpr (Terms::density) {
-        subtract_from_j(to + kDensitySum, density_j);
+        subtract_from_j(to, density_j);
       } else {
-        subtract_from_j<kYSum>(to, y_j, x_j);
+        subtract_from_j(to, y_j, x_j);
       }
     }
   };
@@ -248,7 +254,7 @@ void sum_rates(const SweepTask<T>& task) {
   const DensityDiffusionTerm<T> diffusion{k.two_delta};
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon};
-  std::fill_n(task.sums, kSumStride * task.to_fluid->places(), T{});
+  std::fill_n(task.sums, Terms::blocks.stride * task.to_fluid->places(), T{});
 
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
@@ -273,11 +279,11 @@ void sum_rates(const SweepTask<T>& task) {
         add_rates<Shape, Terms, Terms::friction, Share::i_alone>(
             *task.to_wall, c, task.wall, shift, x_i, y_i, friction, diffusion, i, task.sums);
       }
-      T* const sums = task.sums + kSumStride * c + part;
-      if constexpr (Terms::density) add_lanes(i.density_sum, sums + kDensitySum);
+      T* const sums = task.sums + Terms::blocks.stride * c + part;
+      if constexpr (Terms::density) add_lanes(i.density_sum, sums + Terms::blocks.density);
       if constexpr (Terms::acceleration) {
-        add_lanes(i.x_sum, sums + kXSum);
-        add_lanes(i.y_sum, sums + kYSum);
+        add_lanes(i.x_sum, sums + Terms::blocks.x);
+        add_lanes(i.y_sum, sums + Terms::blocks.y);
       }
     }
   }
@@ -315,14 +321,15 @@ void sum_wall_pressure(const SweepTask<T>& task) {
   }
 }
 
-/// Numerator and divisor of eq. 10 for the clusters of a chunk, in kDensitySum and kXSum.
+/// Numerator and divisor of eq. 10 for the clusters of a chunk.
 template <class Shape, typename T>
 void sum_reinitialisation(const SweepTask<T>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
   const TileShift<T> shift(task.constants->tile_size);
-  std::fill_n(task.sums, kSumStride * task.to_fluid->places(), T{});
+  constexpr SumBlocks blocks = kReinitialisationSums;
+  std::fill_n(task.sums, blocks.stride * task.to_fluid->places(), T{});
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
       const std::size_t slot = kCluster * (task.first_cluster + c) + part;
@@ -343,8 +350,8 @@ void sum_reinitialisation(const SweepTask<T>& task) {
                         weight = hn::MulAdd(w, volume, weight);
                         if constexpr (kShare == Share::both) {
                           const V minus_w = hn::Neg(w);
-                          subtract_from_j<kDensitySum>(place_of(task.sums, list, n, of_j),
-                                                       minus_w * numerator_i, minus_w * volume_i);
+                          subtract_from_j(place_of(task.sums, blocks.stride, list, n, of_j),
+                                          minus_w * numerator_i, minus_w * volume_i);
                         }
                       });
       };
@@ -352,11 +359,31 @@ void sum_reinitialisation(const SweepTask<T>& task) {
       if (task.to_wall != nullptr) {
         add.template operator()<Share::i_alone>(*task.to_wall, task.wall);
       }
-      T* const sums = task.sums + kSumStride * c + part;
-      add_lanes(excess, sums + kDensitySum);
-      add_lanes(weight, sums + kXSum);
+      T* const sums = task.sums + blocks.stride * c + part;
+      add_lanes(excess, sums + blocks.density);
+      add_lanes(weight, sums + blocks.x);
     }
   }
+}
+
+/// Where the particles i or j of a vector are in the middle of the lists' lifetime, their
+/// velocities and what they may be off.
+template <class V>
+struct TrackOf {
+  V x, y, u, v, leeway;
+};
+
+template <typename T, class V, class Load>
+HWY_INLINE TrackOf<V> load_track(const TracksView<T>& tracks, std::size_t slot,
+                                 const Leeway<T>& leeway, const Load& load) {
+  const typename Blocks<T>::D d;
+  const V half_life = hn::Set(d, T{0.5} * leeway.lifetime);
+  const V u = load(tracks.u + slot);
+  const V v = load(tracks.v + slot);
+  return {
+      hn::MulAdd(half_life, u, load(tracks.x + slot)),
+      hn::MulAdd(half_life, v, load(tracks.y + slot)), u, v,
+      hn::MulAdd(hn::Set(d, leeway.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, leeway.least))};
 }
 
 template <typename T>
@@ -366,14 +393,14 @@ std::size_t prune_list(const PruneTask<T>& task) {
   const typename B::D d;
   const TileShift<T> shift(task.tile_size);
   constexpr std::size_t parts = kCluster / B::i_count;
-  V x_i[parts];
-  V y_i[parts];
-  V reach_i[parts];
+  const auto of_i = [](const T* from) HWY_ATTR { return load_i(from); };
+  const auto of_j = [](const T* from) HWY_ATTR { return load_j(from); };
+  const V half_life = hn::Set(d, T{0.5} * task.leeway.lifetime);
+  TrackOf<V> i[parts];
   for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t slot = kCluster * task.cluster + part * B::i_count;
-    x_i[part] = load_i(task.self.x + slot);
-    y_i[part] = load_i(task.self.y + slot);
-    reach_i[part] = load_i(task.self.reach + slot) + hn::Set(d, task.cut_off);
+    i[part] =
+        load_track<T, V>(task.self, kCluster * task.cluster + part * B::i_count, task.leeway, of_i);
+    i[part].leeway = i[part].leeway + hn::Set(d, task.cut_off);
   }
   std::size_t kept = 0;
   for (std::size_t n = 0; n < task.count; ++n) {
@@ -381,12 +408,13 @@ std::size_t prune_list(const PruneTask<T>& task) {
     const std::size_t slot = kCluster * (entry & PairList::kClusterMask);
     const std::uint32_t code = entry >> PairList::kShiftBit;
     bool near = false;
-    for (std::size_t part = 0; part < parts; ++part) {
-      for (std::size_t k = 0; k < B::j_vectors; ++k) {
-        const std::size_t j = slot + k * B::j_lanes;
-        const V dx = x_i[part] + hn::Set(d, shift.x[code]) - load_j(task.other.x + j);
-        const V dy = y_i[part] + hn::Set(d, shift.y[code]) - load_j(task.other.y + j);
-        const V limit = reach_i[part] + load_j(task.other.reach + j);
+    for (std::size_t k = 0; k < B::j_vectors; ++k) {
+      const auto j = load_track<T, V>(task.other, slot + k * B::j_lanes, task.leeway, of_j);
+      for (std::size_t part = 0; part < parts; ++part) {
+        const V dx = i[part].x + hn::Set(d, shift.x[code]) - j.x;
+        const V dy = i[part].y + hn::Set(d, shift.y[code]) - j.y;
+        const V passing = hn::Abs(i[part].u - j.u) + hn::Abs(i[part].v - j.v);
+        const V limit = hn::MulAdd(half_life, passing, i[part].leeway + j.leeway);
         near |= !hn::AllFalse(d, hn::MulAdd(dx, dx, dy * dy) < limit * limit);
       }
     }

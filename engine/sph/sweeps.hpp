@@ -22,7 +22,6 @@ struct PairView {
   const T* volume = nullptr;
   const T* diffused = nullptr;
   const T* stress = nullptr;
-  const T* reach = nullptr;
 };
 
 /// Constants of the terms, dimensionless (terms-inl.hpp).
@@ -46,14 +45,15 @@ struct SweepTask {
   std::size_t first_cluster = 0;
   std::size_t clusters = 0;
   const TermConstants<T>* constants = nullptr;
-  T* sums = nullptr;  ///< out: per place of `to_fluid`, before their common scale (SumBlock); for
+  T* sums = nullptr;  ///< out: per place of `to_fluid`, before their common scale (SumBlocks); for
                       ///< the wall pressure one value per slot
 };
 
-/// A chunk of clusters i whose list of possible neighbours among the clusters j is wanted.
+/// A cluster i whose list of possible neighbours among the clusters j is wanted.
 template <typename T>
 struct PruneTask {
-  PairView<T> self, other;
+  TracksView<T> self, other;
+  Leeway<T> leeway;
   T cut_off{};  ///< support in h
   T tile_size{};
   std::size_t cluster = 0;
@@ -71,9 +71,9 @@ struct Sweeps {
   Sweep density = nullptr;                   ///< eqs. 4, 7
   Sweep acceleration = nullptr;              ///< eqs. 5, 8
   Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
-  Sweep reinitialise = nullptr;              ///< eq. 10: kDensitySum over kXSum is the new s
-  /// Keeps the candidates that hold a particle within cut-off plus both reaches of one of cluster
-  /// i.
+  Sweep reinitialise = nullptr;              ///< eq. 10
+  /// Keeps the candidates of which a particle may come within the cut-off of one of cluster i while
+  /// both stay within the leeway of their tracks.
   std::size_t (*prune)(const PruneTask<T>&) = nullptr;
   Updates<T> updates;       ///< the loops over particles that go with them
   std::string_view target;  ///< name of the SIMD target

@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <limits>
 #include <type_traits>
 
@@ -20,103 +21,131 @@ HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// As many state values as a cluster has, or a vector holds.
+using State = hn::CappedTag<double, kCluster>;
+using StateVec = hn::Vec<State>;
+
+/// Sums of the particles from slot s on.
 template <typename T>
-HWY_INLINE double acceleration(const Rates<T>& rates, const T* sum, double gravity, std::size_t s) {
-  return rates.acceleration_scale * static_cast<double>(sum[s]) + gravity;
+HWY_INLINE StateVec load_sums(const Rates<T>& rates, std::size_t block, std::size_t s) {
+  const State d;
+  const hn::Rebind<T, State> d_sum;
+  const std::size_t n = s - rates.first_slot;
+  const T* from = rates.sums + rates.blocks.stride * (n / kCluster) + block + n % kCluster;
+  if constexpr (std::is_same_v<T, double>) {
+    return hn::LoadU(d, from);
+  } else {
+    return hn::PromoteTo(d, hn::LoadU(d_sum, from));
+  }
 }
 
 template <typename T>
-void leap_frog(const ParticleSpan& p, const Rates<T>& rates, double dt_mean, double dt) {
-  // One field at a time: the compiler sees short loops without aliases.
-  const auto kick = [&](double* HWY_RESTRICT half, double* HWY_RESTRICT full,
-                        const T* HWY_RESTRICT sum, double scale, double constant) HWY_ATTR {
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      const double rate = scale * static_cast<double>(sum[s]) + constant;
-      half[s] += dt_mean * rate;
-      full[s] = half[s] + 0.5 * dt * rate;
-    }
-  };
-  const auto drift = [&](double* HWY_RESTRICT x, const double* HWY_RESTRICT v) HWY_ATTR {
-    for (std::size_t s = p.begin; s < p.end; ++s) x[s] += dt * v[s];
-  };
-  kick(p.vx_half, p.vx, rates.x_sum, rates.acceleration_scale, rates.gravity.x());
-  kick(p.vy_half, p.vy, rates.y_sum, rates.acceleration_scale, rates.gravity.y());
-  kick(p.density_excess_half, p.density_excess, rates.density_sum, rates.density_scale, 0.0);
-  drift(p.x, p.vx_half);
-  drift(p.y, p.vy_half);
+HWY_INLINE StateVec load_rate(const Rates<T>& rates, std::size_t block, double scale,
+                              double constant, std::size_t s) {
+  const State d;
+  return hn::Set(d, scale) * load_sums(rates, block, s) + hn::Set(d, constant);
 }
 
-inline void add_scaled(const ParticleSpan& p, double* HWY_RESTRICT to,
-                       const double* HWY_RESTRICT from, double factor) {
-  for (std::size_t s = p.begin; s < p.end; ++s) to[s] += factor * from[s];
+HWY_INLINE void add_scaled(double* HWY_RESTRICT to, StateVec value, double factor) {
+  const State d;
+  hn::StoreU(hn::LoadU(d, to) + hn::Set(d, factor) * value, d, to);
+}
+
+template <typename T>
+void leap_frog(const ParticleSpan& p, const Rates<T>& r, double dt_mean, double dt) {
+  const State d;
+  const auto kick = [&](double* HWY_RESTRICT half, double* HWY_RESTRICT full, std::size_t s,
+                        StateVec rate) HWY_ATTR {
+    const StateVec next = hn::LoadU(d, half + s) + hn::Set(d, dt_mean) * rate;
+    hn::StoreU(next, d, half + s);
+    hn::StoreU(next + hn::Set(d, 0.5 * dt) * rate, d, full + s);
+    return next;
+  };
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    kick(p.density_excess_half, p.density_excess, s,
+         load_rate(r, r.blocks.density, r.density_scale, 0.0, s));
+    const StateVec vx =
+        kick(p.vx_half, p.vx, s, load_rate(r, r.blocks.x, r.acceleration_scale, r.gravity.x(), s));
+    const StateVec vy =
+        kick(p.vy_half, p.vy, s, load_rate(r, r.blocks.y, r.acceleration_scale, r.gravity.y(), s));
+    add_scaled(p.x + s, vx, dt);
+    add_scaled(p.y + s, vy, dt);
+  }
 }
 
 inline void kick_drift(const ParticleSpan& p, double dt) {
-  add_scaled(p, p.vx, p.ax, 0.5 * dt);
-  add_scaled(p, p.vy, p.ay, 0.5 * dt);
-  add_scaled(p, p.x, p.vx, 0.5 * dt);
-  add_scaled(p, p.y, p.vy, 0.5 * dt);
-}
-
-template <typename T>
-void density_drift(const ParticleSpan& p, const Rates<T>& rates, double dt) {
-  double* HWY_RESTRICT density = p.density_excess;
-  const T* HWY_RESTRICT sum = rates.density_sum;
-  for (std::size_t s = p.begin; s < p.end; ++s) {
-    density[s] += dt * (rates.density_scale * static_cast<double>(sum[s]));
-  }
-  add_scaled(p, p.x, p.vx, 0.5 * dt);
-  add_scaled(p, p.y, p.vy, 0.5 * dt);
-}
-
-template <typename T>
-void kick(const ParticleSpan& p, const Rates<T>& rates, double dt) {
-  const auto one = [&](double* HWY_RESTRICT a, double* HWY_RESTRICT v, const T* HWY_RESTRICT sum,
-                       double gravity) HWY_ATTR {
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      a[s] = acceleration(rates, sum, gravity, s);
-      v[s] += 0.5 * dt * a[s];
-    }
+  const State d;
+  const auto along = [&](double* HWY_RESTRICT x, double* HWY_RESTRICT v,
+                         const double* HWY_RESTRICT a, std::size_t s) HWY_ATTR {
+    add_scaled(v + s, hn::LoadU(d, a + s), 0.5 * dt);
+    add_scaled(x + s, hn::LoadU(d, v + s), 0.5 * dt);
   };
-  one(p.ax, p.vx, rates.x_sum, rates.gravity.x());
-  one(p.ay, p.vy, rates.y_sum, rates.gravity.y());
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    along(p.x, p.vx, p.ax, s);
+    along(p.y, p.vy, p.ay, s);
+  }
 }
 
 template <typename T>
-void write_pairs(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+void density_drift(const ParticleSpan& p, const Rates<T>& r, double dt) {
+  const State d;
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    add_scaled(p.density_excess + s, load_rate(r, r.blocks.density, r.density_scale, 0.0, s), dt);
+    add_scaled(p.x + s, hn::LoadU(d, p.vx + s), 0.5 * dt);
+    add_scaled(p.y + s, hn::LoadU(d, p.vy + s), 0.5 * dt);
+  }
+}
+
+template <typename T>
+void kick(const ParticleSpan& p, const Rates<T>& r, double dt) {
+  const State d;
+  const auto along = [&](double* HWY_RESTRICT a, double* HWY_RESTRICT v, std::size_t s,
+                         StateVec rate) HWY_ATTR {
+    hn::StoreU(rate, d, a + s);
+    add_scaled(v + s, rate, 0.5 * dt);
+  };
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    along(p.ax, p.vx, s, load_rate(r, r.blocks.x, r.acceleration_scale, r.gravity.x(), s));
+    along(p.ay, p.vy, s, load_rate(r, r.blocks.y, r.acceleration_scale, r.gravity.y(), s));
+  }
+}
+
+template <typename T>
+void gather(std::span<const Arrival> arrivals, const T* const* sums_of_chunks, std::size_t stride,
+            T* own) {
+  const hn::CappedTag<T, kCluster> d;
+  for (const Arrival& a : arrivals) {
+    const T* HWY_RESTRICT from = sums_of_chunks[a.chunk] + stride * a.place;
+    T* HWY_RESTRICT to = own + stride * a.cluster;
+    for (std::size_t k = 0; k < stride; k += hn::Lanes(d)) {
+      hn::StoreU(hn::LoadU(d, to + k) + hn::LoadU(d, from + k), d, to + k);
+    }
+  }
+}
+
+/// to = (from - origin of the cluster) * scale
+template <typename T>
+HWY_INLINE void write_relative(const ParticleSpan& p, T* HWY_RESTRICT to,
+                               const double* HWY_RESTRICT from, const double* HWY_RESTRICT origin,
+                               double scale) {
   using D = hn::CappedTag<double, kCluster>;
   const D d;
   const hn::Rebind<T, D> d_out;
-  const auto relative = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT x,
-                            const double* HWY_RESTRICT origin) HWY_ATTR {
-    const auto scale = hn::Set(d, k.inverse_length);
-    for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-      const auto value = (hn::LoadU(d, x + s) - hn::Set(d, origin[s / kCluster])) * scale;
-      if constexpr (std::is_same_v<T, double>) {
-        hn::StoreU(value, d_out, to + s);
-      } else {
-        hn::StoreU(hn::DemoteTo(d_out, value), d_out, to + s);
-      }
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const auto value =
+        (hn::LoadU(d, from + s) - hn::Set(d, origin[s / kCluster])) * hn::Set(d, scale);
+    if constexpr (std::is_same_v<T, double>) {
+      hn::StoreU(value, d_out, to + s);
+    } else {
+      hn::StoreU(hn::DemoteTo(d_out, value), d_out, to + s);
     }
-  };
-  const auto scaled = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT v) HWY_ATTR {
-    for (std::size_t s = p.begin; s < p.end; ++s) to[s] = static_cast<T>(v[s] * k.inverse_speed);
-  };
-  relative(out.x.data(), p.x, k.origin_x);
-  relative(out.y.data(), p.y, k.origin_y);
-  scaled(out.u.data(), p.vx);
-  scaled(out.v.data(), p.vy);
-
-  T* HWY_RESTRICT excess = out.excess.data();
-  T* HWY_RESTRICT volume = out.volume.data();
-  T* HWY_RESTRICT stress = out.stress.data();
-  for (std::size_t i = p.begin; i < p.end; ++i) {
-    const T s = static_cast<T>(p.density_excess[i] * k.inverse_density);
-    const T v = T{1} / (T{1} + s);
-    excess[i] = s;
-    volume[i] = v;
-    stress[i] = s * v * v;
   }
+}
+
+template <typename T>
+void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+  write_relative(p, out.x.data(), p.x, k.origin_x, k.inverse_length);
+  write_relative(p, out.y.data(), p.y, k.origin_y, k.inverse_length);
   if (out.diffused.size() == 0) return;
   T* HWY_RESTRICT diffused = out.diffused.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {
@@ -127,17 +156,67 @@ void write_pairs(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out)
 }
 
 template <typename T>
-void reinitialise_density(const ParticleSpan& p, const T* excess, double reference_density) {
-  for (std::size_t s = p.begin; s < p.end; ++s) {
-    const double fresh = static_cast<double>(excess[s]) * reference_density;
-    if (p.density_excess_half != nullptr) {
-      p.density_excess_half[s] += fresh - p.density_excess[s];
-    }
-    p.density_excess[s] = fresh;
+void write_velocities(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+  const auto scaled = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT v) HWY_ATTR {
+    for (std::size_t s = p.begin; s < p.end; ++s) to[s] = static_cast<T>(v[s] * k.inverse_speed);
+  };
+  scaled(out.u.data(), p.vx);
+  scaled(out.v.data(), p.vy);
+}
+
+template <typename T>
+void write_densities(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+  T* HWY_RESTRICT excess = out.excess.data();
+  T* HWY_RESTRICT volume = out.volume.data();
+  T* HWY_RESTRICT stress = out.stress.data();
+  for (std::size_t i = p.begin; i < p.end; ++i) {
+    const T s = static_cast<T>(p.density_excess[i] * k.inverse_density);
+    const T v = T{1} / (T{1} + s);
+    excess[i] = s;
+    volume[i] = v;
+    stress[i] = s * v * v;
   }
 }
 
-inline void measure(const ParticleSpan& p, const Method& method, double ahead, Motion& out) {
+template <typename T>
+void compare_with_tracks(const ParticleSpan& p, const PairArrays<T>& now,
+                         const TracksView<T>& tracks, const Leeway<T>& leeway, T elapsed,
+                         Motion& out) {
+  using D = hn::ScalableTag<T>;
+  const D d;
+  const auto t = hn::Set(d, elapsed);
+  auto strayed = hn::FirstN(d, 0);
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const auto x = hn::LoadU(d, tracks.x + s);
+    const auto u = hn::LoadU(d, tracks.u + s);
+    const auto v = hn::LoadU(d, tracks.v + s);
+    const auto dx = hn::NegMulAdd(u, t, hn::LoadU(d, now.x.data() + s) - x);
+    const auto dy =
+        hn::NegMulAdd(v, t, hn::LoadU(d, now.y.data() + s) - hn::LoadU(d, tracks.y + s));
+    const auto limit =
+        hn::MulAdd(hn::Set(d, leeway.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, leeway.least));
+    const auto used = hn::Abs(x) < hn::Set(d, static_cast<T>(kNowhere));
+    strayed = hn::Or(strayed, hn::And(used, hn::MulAdd(dx, dx, dy * dy) > limit * limit));
+  }
+  out.strayed |= !hn::AllFalse(d, strayed);
+}
+
+template <typename T>
+void reinitialise_density(const ParticleSpan& p, const Rates<T>& r, double reference_density) {
+  const State d;
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const StateVec divisor = load_sums(r, r.blocks.x, s);
+    const StateVec quotient = load_sums(r, r.blocks.density, s) / divisor;
+    const StateVec fresh =
+        hn::IfThenElseZero(divisor > hn::Zero(d), quotient) * hn::Set(d, reference_density);
+    if (p.density_excess_half != nullptr) {
+      add_scaled(p.density_excess_half + s, fresh - hn::LoadU(d, p.density_excess + s), 1.0);
+    }
+    hn::StoreU(fresh, d, p.density_excess + s);
+  }
+}
+
+inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   using D = hn::ScalableTag<double>;
   const D d;
   using V = hn::Vec<D>;
@@ -146,18 +225,15 @@ inline void measure(const ParticleSpan& p, const Method& method, double ahead, M
   V speed_sq = hn::Zero(d);
   V low = hn::Set(d, 1e300);
   V high = hn::Set(d, -1e300);
-  auto moved = hn::FirstN(d, 0);
   auto outside = hn::FirstN(d, 0);
   auto broken = hn::FirstN(d, 0);
-  const V lead = hn::Set(d, ahead);
   // As Method::keeps.
   const Box& domain = method.domain;
   const V top = hn::Set(d, method.wall_top.value_or(std::numeric_limits<double>::infinity()));
   const V rim_left = hn::Set(d, method.rim_left);
   const V rim_right = hn::Set(d, method.rim_right);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const V reach = at(p.reach, s);
-    const auto used = reach < hn::Set(d, kNoReach);
+    const auto used = at(p.id, s) >= hn::Zero(d);
     const V vx = at(p.vx, s);
     const V vy = at(p.vy, s);
     const V x = at(p.x, s);
@@ -166,9 +242,6 @@ inline void measure(const ParticleSpan& p, const Method& method, double ahead, M
     speed_sq = hn::Max(speed_sq, hn::IfThenElseZero(used, vx * vx + vy * vy));
     low = hn::Min(low, hn::IfThenElse(used, rho, low));
     high = hn::Max(high, hn::IfThenElse(used, rho, high));
-    const V dx = x + lead * vx - at(p.x_sorted, s);
-    const V dy = y + lead * vy - at(p.y_sorted, s);
-    moved = hn::Or(moved, hn::And(used, dx * dx + dy * dy > reach * reach));
     const auto inside =
         hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
                 hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
@@ -180,12 +253,13 @@ inline void measure(const ParticleSpan& p, const Method& method, double ahead, M
         hn::Abs(x) + hn::Abs(y) + hn::Abs(vx) + hn::Abs(vy) + hn::Abs(rho) < hn::Set(d, 1e300);
     broken = hn::Or(broken, hn::AndNot(sound, used));
   }
-  out.speed_sq = hn::GetLane(hn::MaxOfLanes(d, speed_sq));
-  out.min_density_excess = hn::GetLane(hn::MinOfLanes(d, low));
-  out.max_density_excess = hn::GetLane(hn::MaxOfLanes(d, high));
-  out.moved = !hn::AllFalse(d, moved);
-  out.outside = !hn::AllFalse(d, outside);
-  out.finite = hn::AllFalse(d, broken);
+  Motion seen;
+  seen.speed_sq = hn::GetLane(hn::MaxOfLanes(d, speed_sq));
+  seen.min_density_excess = hn::GetLane(hn::MinOfLanes(d, low));
+  seen.max_density_excess = hn::GetLane(hn::MaxOfLanes(d, high));
+  seen.outside = !hn::AllFalse(d, outside);
+  seen.finite = hn::AllFalse(d, broken);
+  out.merge(seen);
 }
 
 inline void measure_acceleration(const ParticleSpan& p, Motion& out) {
@@ -193,36 +267,25 @@ inline void measure_acceleration(const ParticleSpan& p, Motion& out) {
   const D d;
   hn::Vec<D> largest = hn::Zero(d);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const auto used = hn::LoadU(d, p.reach + s) < hn::Set(d, kNoReach);
+    const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
     const auto ax = hn::LoadU(d, p.ax + s);
     const auto ay = hn::LoadU(d, p.ay + s);
     largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
   }
-  out.acceleration_sq = hn::GetLane(hn::MaxOfLanes(d, largest));
+  out.acceleration_sq = std::max(out.acceleration_sq, hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
 template <typename T>
-void measure_rates(const ParticleSpan& p, const Rates<T>& rates, Motion& out) {
-  using D = hn::ScalableTag<double>;
-  const D d;
-  const hn::Rebind<T, D> d_sum;
-  const auto rate = [&](const T* sum, double gravity, std::size_t s) HWY_ATTR {
-    const auto value = hn::LoadU(d_sum, sum + s);
-    const auto scale = hn::Set(d, rates.acceleration_scale);
-    if constexpr (std::is_same_v<T, double>) {
-      return scale * value + hn::Set(d, gravity);
-    } else {
-      return scale * hn::PromoteTo(d, value) + hn::Set(d, gravity);
-    }
-  };
-  hn::Vec<D> largest = hn::Zero(d);
+void measure_rates(const ParticleSpan& p, const Rates<T>& r, Motion& out) {
+  const State d;
+  StateVec largest = hn::Zero(d);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const auto used = hn::LoadU(d, p.reach + s) < hn::Set(d, kNoReach);
-    const auto ax = rate(rates.x_sum, rates.gravity.x(), s);
-    const auto ay = rate(rates.y_sum, rates.gravity.y(), s);
+    const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
+    const auto ax = load_rate(r, r.blocks.x, r.acceleration_scale, r.gravity.x(), s);
+    const auto ay = load_rate(r, r.blocks.y, r.acceleration_scale, r.gravity.y(), s);
     largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
   }
-  out.acceleration_sq = hn::GetLane(hn::MaxOfLanes(d, largest));
+  out.acceleration_sq = std::max(out.acceleration_sq, hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
 template <typename T>
@@ -231,7 +294,11 @@ void fill_updates(Updates<T>& out) {
   out.kick_drift = &kick_drift;
   out.density_drift = &density_drift<T>;
   out.kick = &kick<T>;
-  out.write_pairs = &write_pairs<T>;
+  out.write_places = &write_places<T>;
+  out.write_velocities = &write_velocities<T>;
+  out.write_densities = &write_densities<T>;
+  out.compare = &compare_with_tracks<T>;
+  out.gather = &gather<T>;
   out.reinitialise = &reinitialise_density<T>;
   out.measure = &measure;
   out.measure_acceleration = &measure_acceleration;

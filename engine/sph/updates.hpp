@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 
 #include "engine/sph/method.hpp"
 #include "engine/sph/pair_arrays.hpp"
+#include "engine/sph/tracks.hpp"
 #include "engine/sph/vec.hpp"
 
 namespace sluice {
 
 /// The state of the slots [begin, end) of one chunk, SI units; a field that the integrator does not
-/// carry is null. Empty slots have reach = kNoReach and take part in the arithmetic, but in no
-/// result.
+/// carry is null. Empty slots have id -1 and take part in the arithmetic, but in no result.
 struct ParticleSpan {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -25,19 +26,16 @@ struct ParticleSpan {
   double* density_excess_half = nullptr;
   double* ax = nullptr;
   double* ay = nullptr;
-  const double* x_sorted = nullptr;
-  const double* y_sorted = nullptr;
-  const double* reach = nullptr;
+  const double* id = nullptr;
 };
-inline constexpr double kNoReach = 1e300;
 
 /// Out of pair sums into rates: D rho/Dt = density_scale * sum, Dv/Dt = acceleration_scale * sum +
 /// gravity.
 template <typename T>
 struct Rates {
-  const T* density_sum = nullptr;
-  const T* x_sum = nullptr;
-  const T* y_sum = nullptr;
+  const T* sums = nullptr;     ///< of the clusters of a chunk
+  std::size_t first_slot = 0;  ///< of the chunk
+  SumBlocks blocks;
   double density_scale = 0.0;       ///< kg/(m^3 s)
   double acceleration_scale = 0.0;  ///< m/s^2
   Vec gravity = Vec::Zero();        ///< m/s^2
@@ -49,7 +47,7 @@ struct Motion {
   double acceleration_sq = 0.0;  ///< largest, m^2/s^4
   double min_density_excess = 1e300;
   double max_density_excess = -1e300;
-  bool moved = false;  ///< a particle is, or will be, farther from its sorted place than its reach
+  bool strayed = false;  ///< a particle is off its track by more than the leeway
   bool outside = false;  ///< a particle is to be retired
   bool finite = true;
 
@@ -58,7 +56,7 @@ struct Motion {
     acceleration_sq = std::max(acceleration_sq, other.acceleration_sq);
     min_density_excess = std::min(min_density_excess, other.min_density_excess);
     max_density_excess = std::max(max_density_excess, other.max_density_excess);
-    moved |= other.moved;
+    strayed |= other.strayed;
     outside |= other.outside;
     finite &= other.finite;
   }
@@ -88,12 +86,20 @@ struct Updates {
   void (*density_drift)(const ParticleSpan&, const Rates<T>&, double dt) = nullptr;
   /// a = rates, v += dt/2 a.
   void (*kick)(const ParticleSpan&, const Rates<T>&, double dt) = nullptr;
-  /// State to pair arrays; `diffused` and `stress` where they are kept.
-  void (*write_pairs)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
-  /// New excess (in units of rho_0) into both time levels, by the same increment (eq. 10).
-  void (*reinitialise)(const ParticleSpan&, const T* excess, double reference_density) = nullptr;
-  /// Speeds, densities and displacements; positions are looked at `ahead` seconds later.
-  void (*measure)(const ParticleSpan&, const Method&, double ahead, Motion&) = nullptr;
+  /// State to pair arrays: places (with psi where it is kept), velocities, densities.
+  void (*write_places)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
+  void (*write_velocities)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
+  void (*write_densities)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
+  /// Whether a particle, `elapsed` h/c after the tracks began, is off its own.
+  void (*compare)(const ParticleSpan&, const PairArrays<T>&, const TracksView<T>&, const Leeway<T>&,
+                  T elapsed, Motion&) = nullptr;
+  /// Adds to a chunk's own sums those that others have for it, in this order.
+  void (*gather)(std::span<const Arrival>, const T* const* sums_of_chunks, std::size_t stride,
+                 T* own) = nullptr;
+  /// eq. 10 into both time levels, by the same increment.
+  void (*reinitialise)(const ParticleSpan&, const Rates<T>&, double reference_density) = nullptr;
+  /// Speeds, densities and what is outside.
+  void (*measure)(const ParticleSpan&, const Method&, Motion&) = nullptr;
   /// Largest acceleration of the state.
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;
   /// Largest acceleration of the rates.

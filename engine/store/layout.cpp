@@ -238,7 +238,7 @@ void walk_format(ReadArchive& archive, const Format& format) {
   if (version != format.version) {
     throw StorageError(StorageFault::unsupported_version,
                        fmt::format("version {} of the format {}, this program knows version {}; "
-                                   "use the program that wrote it or a newer one",
+                                   "use the program that wrote it",
                                    version, name, format.version));
   }
 }

@@ -239,7 +239,6 @@ TEST(ReinitialisationTerm, MovesBothTimeLevelsByTheSameIncrement) {
   p.density_excess_half = {9.0, 27.0};
   p.x_sorted = p.x;
   p.y_sorted = p.y;
-  p.reach = {0.01, 0.01};
   Solver solver(m, state, {}, {});
   solver.step();
   // rho = (W0 + W1)/(W0/rho_i + W1/rho_j); nothing moves yet, so the step itself adds nothing.

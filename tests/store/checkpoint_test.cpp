@@ -14,6 +14,7 @@
 #include "engine/store/digest.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/hdf5_file.hpp"
+#include "engine/store/layout.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/store/series_file.hpp"
 #include "tests/store/expect_fault.hpp"
@@ -249,11 +250,12 @@ TEST(CheckpointLayout, RefusesOtherVersionsTypesUnitsShapesAndValues) {
                            }});
   };
   const std::uint64_t two = 2;
+  const std::uint64_t later = kCheckpointFormat.version + 1;
   const std::uint64_t huge = UINT64_MAX;
   const auto refuse = [](StorageFault fault, const Bytes& other) {
     expect_fault(fault, [&] { (void)decode_checkpoint(other); });
   };
-  refuse(StorageFault::unsupported_version, replaced("/@version", two));
+  refuse(StorageFault::unsupported_version, replaced("/@version", later));
   refuse(StorageFault::not_ours, replaced("/@format", std::string("photographs")));
   refuse(StorageFault::corrupt, replaced("/@step", 5.0));
   refuse(StorageFault::corrupt, replaced("/@bit_exact", two));
