@@ -28,7 +28,7 @@ runtime_packages=(libhdf5-103-1 libfmt9 libxxhash0 libhwy1 libsqlite3-0 libcpp-h
 test_packages=(
   libgtest-dev libgmock-dev
   librapidcheck-dev     # property tests
-  libbenchmark-dev wrk  # tests/bench
+  libbenchmark-dev wrk valgrind  # tests/bench
   clang clang-format clang-tidy libclang-rt-14-dev
   python3 python3-jsonschema python3-h5py python3-numpy
 )

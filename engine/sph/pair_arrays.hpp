@@ -17,7 +17,7 @@ class AlignedArray {
  public:
   void resize(std::size_t size) {
     if (size > capacity_) {
-      capacity_ = size + size / 8;
+      capacity_ = size + size / 32;
       data_ = hwy::AllocateAligned<T>(capacity_ + kTail);
       std::fill(data_.get(), data_.get() + capacity_ + kTail, T{});
     }

@@ -8,13 +8,15 @@
 #   tests/bench/run.sh targets      the paper's and the recommended scheme on each SIMD target
 #   tests/bench/run.sh left-out     what a scene saves by leaving a term out (left_out_bench.cpp)
 #   tests/bench/run.sh case         the whole dam break to T = 8, core-seconds and errors
+#   tests/bench/run.sh work         instructions per particle and step, by function (instructions.py),
+#                                   and what the core can do at best (core_bench.cpp)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 parts=("$@")
-((${#parts[@]})) || parts=(speed targets left-out case)
+((${#parts[@]})) || parts=(speed targets left-out case work)
 cmake --preset release -DSLUICE_BENCHMARKS=ON >/dev/null
-cmake --build --preset release --target sluice bench_left_out -j "$(nproc)" >/dev/null
+cmake --build --preset release --target sluice bench_left_out bench_core -j "$(nproc)" >/dev/null
 sluice=$PWD/build/release/cli/sluice
 
 for part in "${parts[@]}"; do
@@ -42,6 +44,10 @@ for part in "${parts[@]}"; do
         done
         "$sluice" report "$folder/$scene-1" | grep 'mean relative L2'
       done
+      ;;
+    work)
+      python3 tests/bench/instructions.py "$sluice" schemas/examples --profile
+      build/release/tests/bench_core
       ;;
     *) echo "run.sh: unknown part '$part'; see its first lines" >&2; exit 2 ;;
   esac
