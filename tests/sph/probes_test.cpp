@@ -172,6 +172,17 @@ TEST(EnergyProbe, IsThatOfKnownStates) {
   EXPECT_DOUBLE_EQ(energy.total(), energy.kinetic + energy.potential + energy.internal);
 }
 
+TEST(EnergyProbe, KeepsItsDigitsFromNoCompressionToMuch) {
+  // On both sides of 2 %, where one formula takes over from another.
+  for (const double excess : {1e-6, -1e-3, 0.1, 5.0, -19.99, 19.99, 20.01, -20.01, 200.0}) {
+    Fluid fluid;
+    fluid.add({0.0, 0.0}, {0.0, 0.0}, excess);
+    const Solver solver(plain_method(), start_from(fluid), {}, {});
+    const double expected = 10.0 * compression_energy(excess);
+    EXPECT_NEAR(solver.energy().internal, expected, 1e-9 * expected) << excess;
+  }
+}
+
 TEST(EnergyProbe, OfAFallingParticleIsKept) {
   for (const Integrator integrator : kIntegrators) {
     Method m = plain_method();
