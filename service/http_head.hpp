@@ -16,7 +16,7 @@ struct HttpLimits {
   std::size_t head_bytes = 16 * 1024;
   std::size_t header_lines = 100;
   std::size_t target_bytes = 4 * 1024;
-  std::size_t body_bytes = 64 * 1024;
+  std::size_t body_bytes = 256 * 1024;
 };
 
 /// Why a request is not taken.

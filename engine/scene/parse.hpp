@@ -20,7 +20,7 @@ struct Problem {
 };
 
 /// Limits that hold before anything is read or allocated.
-inline constexpr std::size_t kMaxSceneBytes = 64 * 1024;
+inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;
 inline constexpr std::size_t kMaxSceneDepth = 16;
 inline constexpr double kMaxParticles = 50e6;
 inline constexpr std::size_t kMaxProblems = 100;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace sluice {
 namespace {
@@ -33,7 +34,8 @@ class StripSearch {
   void start(float low, float high, std::size_t first_strip) {
     rows_.clear();
     const std::size_t strips = layout_.strip_begin.size() - 1;
-    for (std::size_t s = first_strip; s < strips; ++s) {
+    for (std::size_t s = std::max(first_strip, bounds_.first_strip(low - range_));
+         s < strips && bounds_.strip_y_min_after[s] <= high + range_; ++s) {
       const std::uint32_t begin = layout_.strip_begin[s];
       const std::uint32_t end = layout_.strip_begin[s + 1];
       if (bounds_.strip_y_max[s] < low - range_ || bounds_.strip_y_min[s] > high + range_) continue;
@@ -177,6 +179,17 @@ void ClusterBounds::assign_boxes(ThreadTeam& team, const Layout& layout, const M
     float left = kHuge;
     for (std::size_t c = end; c-- > begin;) x_min_after[c] = left = std::min(left, x_min[c]);
   });
+  strip_y_max_before.resize(strips);
+  strip_y_min_after.resize(strips);
+  std::inclusive_scan(strip_y_max.begin(), strip_y_max.end(), strip_y_max_before.begin(),
+                      [](float a, float b) { return std::max(a, b); });
+  std::inclusive_scan(strip_y_min.rbegin(), strip_y_min.rend(), strip_y_min_after.rbegin(),
+                      [](float a, float b) { return std::min(a, b); });
+}
+
+std::size_t ClusterBounds::first_strip(float y) const {
+  const auto first = std::lower_bound(strip_y_max_before.begin(), strip_y_max_before.end(), y);
+  return static_cast<std::size_t>(first - strip_y_max_before.begin());
 }
 
 template <typename T>

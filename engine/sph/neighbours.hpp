@@ -19,6 +19,8 @@ struct ClusterBounds {
   std::vector<float> x_min_after;   ///< least x_min of the strip from the cluster on
   std::vector<Grid::Tile> tile;     ///< of the sorted places
   std::vector<float> strip_y_min, strip_y_max;
+  std::vector<float> strip_y_max_before;  ///< largest strip_y_max up to the strip
+  std::vector<float> strip_y_min_after;   ///< least strip_y_min from the strip on
 
   /// Sorted places per slot in m; empty slots have id < 0.
   void assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout, const double* x,
@@ -34,6 +36,9 @@ struct ClusterBounds {
   };
   void assign_boxes(ThreadTeam& team, const Layout& layout, const Method& method,
                     const Leeway<double>& leeway, const Places& places);
+
+  /// No strip before this one reaches up to y.
+  [[nodiscard]] std::size_t first_strip(float y) const;
 };
 
 /// A set of particles as the search sees it.

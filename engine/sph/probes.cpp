@@ -54,7 +54,9 @@ void FluidProbe::for_each_in(const Box& box, const Body& body) const {
   const double x_max = box.max.x() / h + slack;
   const double y_min = box.min.y() / h - slack;
   const double y_max = box.max.y() / h + slack;
-  for (std::size_t strip = 0; strip + 1 < layout_.strip_begin.size(); ++strip) {
+  for (std::size_t strip = bounds_.first_strip(static_cast<float>(y_min));
+       strip + 1 < layout_.strip_begin.size(); ++strip) {
+    if (static_cast<double>(bounds_.strip_y_min_after[strip]) > y_max) break;
     if (static_cast<double>(bounds_.strip_y_max[strip]) < y_min) continue;
     if (static_cast<double>(bounds_.strip_y_min[strip]) > y_max) continue;
     const auto& before = bounds_.x_max_before;

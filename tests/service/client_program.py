@@ -249,7 +249,7 @@ class Errors(Case):
     def test_a_scene_that_cannot_be_read_never_leaves(self):
         nowhere = f"http://127.0.0.1:{closed_port()}"
         for path in (os.path.join(self.folder, "none.json"), self.folder,
-                     self.write(" " * (64 * 1024 + 1))):
+                     self.write(" " * (256 * 1024 + 1))):
             with self.subTest(path=path):
                 said = self.expect(INVALID_SCENE, "submit", path, "--server", nowhere).stderr
                 self.assertIn(path, said)

@@ -76,10 +76,10 @@ TEST(HttpHead, RefusesCodedBodiesLongBodiesAndLongTargets) {
   EXPECT_EQ(refusal_of(head_with("Transfer-Encoding: chunked\r\n")), ProblemType::not_implemented);
   EXPECT_EQ(refusal_of(head_with("Content-Encoding: gzip\r\n")),
             ProblemType::unsupported_media_type);
-  EXPECT_EQ(refusal_of(head_with("Content-Length: 65537\r\n")), ProblemType::body_too_large);
+  EXPECT_EQ(refusal_of(head_with("Content-Length: 262145\r\n")), ProblemType::body_too_large);
   EXPECT_EQ(refusal_of(head_with("Content-Length: 99999999999999999999999\r\n")),
             ProblemType::body_too_large);
-  EXPECT_EQ(head_of(head_with("Content-Length: 65536\r\n")).body_bytes, 65536U);
+  EXPECT_EQ(head_of(head_with("Content-Length: 262144\r\n")).body_bytes, 262144U);
   EXPECT_EQ(refusal_of("GET /" + std::string(8192, 'a') + " HTTP/1.1\r\nHost: h\r\n\r\n"),
             ProblemType::uri_too_long);
 }

@@ -146,7 +146,7 @@ def walk_every_operation(walk, server, guarded, job):
         if path not in ("/livez", "/readyz"):
             walk.ask(guarded, method, target)
         for line in (b"Content-Encoding: gzip", b"Transfer-Encoding: chunked",
-                     b"Content-Length: 65537", b"Content-Length: x", 101 * b"X: y\r\n" + b"X: y"):
+                     b"Content-Length: 262145", b"Content-Length: x", 101 * b"X: y\r\n" + b"X: y"):
             walk.check(method, target, raw(server, b"%s %s HTTP/1.1\r\nHost: localhost\r\n%s\r\n\r\n"
                                            % (method.encode(), target.encode(), line)))
         walk.check(method, target, raw(
