@@ -149,7 +149,7 @@ class Nginx(unittest.TestCase):
         connection.close()
 
     def test_leaves_it_to_the_service_to_say_what_is_too_large(self):
-        status, body = self.proxy.ask("POST", "/v1/jobs", b" " * 100000)
+        status, body = self.proxy.ask("POST", "/v1/jobs", b" " * 300000)
         self.assertEqual(status, 413)
         self.assertEqual(json.loads(body)["status"], 413)
 

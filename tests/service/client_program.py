@@ -253,7 +253,7 @@ class Errors(Case):
             with self.subTest(path=path):
                 said = self.expect(INVALID_SCENE, "submit", path, "--server", nowhere).stderr
                 self.assertIn(path, said)
-        self.expect(INVALID_SCENE, "submit", "-", "--server", nowhere, stdin=" " * 70000)
+        self.expect(INVALID_SCENE, "submit", "-", "--server", nowhere, stdin=" " * 300000)
 
     def test_what_a_service_does_not_allow_is_named(self):
         server = self.serve("--max-particles", "60")
