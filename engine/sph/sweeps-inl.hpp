@@ -156,11 +156,17 @@ HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, const 
   using B = Blocks<T>;
   const typename B::D d;
   const std::uint32_t* HWY_RESTRICT entries = list.entries.data();
+  std::uint32_t seen_from = kSameTile;
+  V x_seen = x_i;
+  V y_seen = y_i;
   for (std::size_t n = list.begin[c]; n != list.begin[c + 1]; ++n) {
     const std::size_t slot = kCluster * (entries[n] & PairList::kClusterMask);
     const std::uint32_t code = entries[n] >> PairList::kShiftBit;
-    const V x_seen = x_i + hn::Set(d, shift.x[code]);
-    const V y_seen = y_i + hn::Set(d, shift.y[code]);
+    if (HWY_UNLIKELY(code != seen_from)) {
+      seen_from = code;
+      x_seen = x_i + hn::Set(d, shift.x[code]);
+      y_seen = y_i + hn::Set(d, shift.y[code]);
+    }
     for (std::size_t part = 0; part < B::j_vectors; ++part) {
       const std::size_t j = slot + part * B::j_lanes;
       body(j, x_seen - load_j(other.x + j), y_seen - load_j(other.y + j), n, part);

@@ -5,9 +5,9 @@
 namespace sluice {
 namespace {
 
-// About 30 microseconds: longer than the serial part between two passes, shorter than a scheduler's
-// time slice.
-constexpr int kSpins = 1000;
+// Some 200 microseconds: longer than the serial part between two passes and than the last chunk of
+// another thread, for waking a sleeper costs as much; shorter than a scheduler's time slice.
+constexpr int kSpins = 5000;
 
 /// Waits until `word` is no longer `old`: spins first, then sleeps.
 void wait_while(const std::atomic<std::uint64_t>& word, std::uint64_t old) {
