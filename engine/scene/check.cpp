@@ -133,13 +133,20 @@ void check_work(const Scene& scene, Problems& problems) {
   }
 }
 
+void check_wall_drag(const Scene& scene, Problems& problems) {
+  if (!scene.method.wall_friction || !scene.method.physical_viscosity) return;
+  problems.add("/numerics/wall_friction",
+               "stands beside physical_viscosity, which holds the fluid at walls already; remove "
+               "one of the two");
+}
+
 /// A scheme whose errors fill the flow within the run is refused; slower growth is only told.
 void check_stability(const Scene& scene, Problems& problems) {
   if (stability_outlook(scene) != Outlook::unstable) return;
   const StabilityPrediction p = predict_stability(scene);
   const std::string remedy =
       p.courant_limit > 0.0
-          ? fmt::format("must be at most {:.3g} for this integrator, kernel, alpha and delta",
+          ? fmt::format("must be at most {:.3g} for this integrator, kernel, alpha, nu and delta",
                         p.courant_limit)
           : "no step of this integrator is stable without damping; name "
             "numerics.artificial_viscosity and numerics.density_diffusion, or use kick_drift_kick";
@@ -214,6 +221,8 @@ void check(const Document& document, StabilityCheck stability, Problems& problem
   const Scene scene = resolve(document);
   check_sound_speed(scene, document, problems);
   check_particle_count(scene, problems);
+  check_gate(scene, problems);
+  check_wall_drag(scene, problems);
   if (!placed) return;
   check_domain(scene, document, problems);
   if (problems.clean({"/domain"})) check_sensors(scene, problems);

@@ -107,6 +107,36 @@ void check_tank(const Scene& scene, Problems& problems) {
   });
 }
 
+void check_gate(const Scene& scene, Problems& problems) {
+  if (!scene.gate || !problems.clean({"/gate"})) return;
+  if (!scene.tank) {
+    problems.add("/gate", "stands in no tank; add the key tank or remove the gate");
+    return;
+  }
+  const Shape body = gate_body(*scene.gate, scene.method);
+  const Box place = bounds(body);
+  const Box inside{Vec::Zero(), Vec(scene.tank->width, scene.tank->height)};
+  if (!within(place, inside)) {
+    problems.add("/gate", fmt::format("reaches from {}; must lie inside /tank, {}", show(place),
+                                      show(inside)));
+  }
+  if (scene.gate->height < scene.method.spacing * (1 - kSlack)) {
+    problems.add("/gate/height", fmt::format("is {:.6g} m; must be at least one "
+                                             "/resolution/spacing, {:.6g} m",
+                                             scene.gate->height, scene.method.spacing));
+  }
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const Box other = bounds(scene.obstacles[i]);
+    if ((other.min.array() >= place.max.array()).any() ||
+        (other.max.array() <= place.min.array()).any()) {
+      continue;
+    }
+    problems.add("/gate", fmt::format("reaches from {}, into the box around /obstacles/{}, {}; "
+                                      "move one of them",
+                                      show(place), i, show(other)));
+  }
+}
+
 void check_domain(const Scene& scene, const Document& document, Problems& problems) {
   const Box& domain = scene.method.domain;
   const double dx = scene.method.spacing;

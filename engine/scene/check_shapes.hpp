@@ -15,6 +15,8 @@ void check_polygons(const Scene& scene, Problems& problems);
 void check_sizes(const Scene& scene, Problems& problems);
 /// Fluid and obstacles lie inside the tank.
 void check_tank(const Scene& scene, Problems& problems);
+/// The gate stands in a tank, beside all obstacles. `scene` is resolved.
+void check_gate(const Scene& scene, Problems& problems);
 /// The domain is a box, not vast, and holds the tank with its walls, else every shape. `scene` is
 /// resolved; `document` tells whether the domain was given.
 void check_domain(const Scene& scene, const Document& document, Problems& problems);

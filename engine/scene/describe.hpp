@@ -104,6 +104,28 @@ void describe(Archive& a, Tank& tank) {
 }
 
 template <class Archive>
+void describe(Archive& a, Gate& gate) {
+  a.number("x", gate.x,
+           {.about = "the side that the fluid touches; the gate stands on the floor to its right",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+  std::optional<double> given;
+  if (gate.height > 0) given = gate.height;
+  a.number("height", given,
+           {.about = "height before it is lifted",
+            .unit = "m",
+            .range = kLength,
+            .otherwise = "the tank's height"});
+  gate.height = given.value_or(0.0);
+  a.number("speed", gate.speed,
+           {.about = "speed at which it is lifted from t = 0 on",
+            .unit = "m/s",
+            .range = above(0, 1e6),
+            .need = Need::required});
+}
+
+template <class Archive>
 void describe(Archive& a, Box& box) {
   a.vector(
       "min", box.min,
@@ -136,6 +158,14 @@ void describe(Archive& a, WallFriction& term) {
 }
 
 template <class Archive>
+void describe(Archive& a, PhysicalViscosity& term) {
+  a.number("nu", term.nu,
+           {.about = "kinematic viscosity: 1e-6 m^2/s is water's own, a turbulent flow's is larger",
+            .unit = "m^2/s",
+            .range = from(0, 1e12)});
+}
+
+template <class Archive>
 void describe(Archive& a, Reinitialisation& term) {
   a.integer("interval", term.interval,
             {.about = "steps from one reinitialisation to the next", .range = from(1, 1e6)});
@@ -154,7 +184,10 @@ void describe_numerics(Archive& a, Method& method) {
             {.about = "artificial viscosity Pi_ij between fluid particles, eq. 8",
              .otherwise = "no viscosity"});
   a.section("wall_friction", method.wall_friction,
-            {.about = "Pi_ij of eq. 8 against walls at rest", .otherwise = "free slip"});
+            {.about = "Pi_ij of eq. 8 against walls at rest; not beside physical_viscosity",
+             .otherwise = "free slip"});
+  a.section("physical_viscosity", method.physical_viscosity,
+            {.about = "viscous stress in the fluid, no slip at walls", .otherwise = "none"});
   a.word("wall_pressure", kWallPressureWords, method.wall_pressure,
          {.about = "pressure of the walls' dummy particles, eq. 9"});
   a.section("reinitialisation", method.reinitialisation,
@@ -344,6 +377,9 @@ void describe(Archive& a, Document& document) {
          {.about = "what it is for", .characters = Characters::sentence, .max = 2000});
   a.section("tank", scene.tank,
             {.about = "solid walls around [0, width] x [0, height]", .otherwise = "no walls"});
+  a.section(
+      "gate", scene.gate,
+      {.about = "a wall across the tank that is lifted at the start", .otherwise = "no gate"});
   a.list("fluid", scene.fluid,
          {.about = "regions filled with fluid at the start; they must not overlap",
           .min = 1,

@@ -134,6 +134,10 @@ Scene resolve(const Document& document) {
     method.rim_left = -1.5 * method.spacing;
     method.rim_right = scene.tank->width + 1.5 * method.spacing;
   }
+  if (scene.gate && scene.tank) {
+    if (scene.gate->height == 0.0) scene.gate->height = scene.tank->height;
+    method.lifted_wall = LiftedWall{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
+  }
   for (Sensor& sensor : scene.sensors) {
     const bool wants_length = sensor.kind == SensorKind::pressure;
     if (wants_length && sensor.smoothing_length == 0.0) {

@@ -124,10 +124,12 @@ void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
 
 InitialParticles create_particles(const Scene& scene) {
   InitialParticles result;
-  fill(scene, Displacement(scene.obstacles, scene.method.spacing), result.state.particles);
+  std::vector<Shape> solids = scene.obstacles;
+  if (scene.gate) solids.emplace_back(gate_body(*scene.gate, scene.method));
+  fill(scene, Displacement(solids, scene.method.spacing), result.state.particles);
   if (scene.jitter) displace(*scene.jitter, scene.method.spacing, result.state.particles);
   if (scene.tank) result.walls = tank_walls(*scene.tank, scene.method);
-  const std::vector<Vec> solid = obstacle_walls(scene.obstacles, scene.method);
+  const std::vector<Vec> solid = obstacle_walls(solids, scene.method);
   result.walls.insert(result.walls.end(), solid.begin(), solid.end());
   return result;
 }

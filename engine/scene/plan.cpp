@@ -42,14 +42,17 @@ void plan_walls(const Scene& scene, const Lists& passes) {
   const std::string about = fmt::format("wall pressure of eq. 9, {}",
                                         word_for(kWallPressureWords, scene.method.wall_pressure));
   constexpr std::string_view kFriction = "viscosity of eq. 8 against walls";
+  constexpr std::string_view kGate = "dummy particles of the lifted gate";
   if (!has_walls(scene)) {
     passes.leave_out("wall_pressure", about, "no key tank and no key obstacles");
     passes.leave_out("wall_friction", kFriction, "no walls to rub on");
+    passes.leave_out("gate", kGate, "no key gate");
     return;
   }
   passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
   passes.either(scene.method.wall_friction.has_value(), "wall_friction", kFriction,
                 "numerics.wall_friction");
+  passes.either(scene.gate.has_value(), "gate", kGate, "gate");
 }
 
 void plan_passes(const Scene& scene, const Lists& passes) {
@@ -65,6 +68,12 @@ void plan_passes(const Scene& scene, const Lists& passes) {
                 "numerics.density_diffusion");
   passes.either(m.viscosity.has_value(), "artificial_viscosity", "eq. 8 between fluid particles",
                 "numerics.artificial_viscosity");
+  const std::string stress =
+      m.physical_viscosity
+          ? fmt::format("viscous stress, nu {} m^2/s, no slip at walls", m.physical_viscosity->nu)
+          : "viscous stress, no slip at walls";
+  passes.either(m.physical_viscosity.has_value(), "physical_viscosity", stress,
+                "numerics.physical_viscosity");
   plan_walls(scene, passes);
   passes.either(!m.gravity.isZero(0.0), "gravity", "body acceleration of eq. 5", "gravity");
   passes.run("update", "time step of eq. 18 and integration",

@@ -37,6 +37,14 @@ struct Tank {
   bool open_top = true;
 };
 
+/// A wall across the tank, on its floor, that holds the fluid on its left back and is lifted from
+/// t = 0 on. Its thickness, to the right of x, is that of all walls: the kernel's support.
+struct Gate {
+  double x = 0.0;       ///< the side that the fluid touches, m
+  double height = 0.0;  ///< m; parsed default: the tank's height
+  double speed = 0.0;   ///< of the lower edge, upwards, m/s
+};
+
 enum class InitialPressure {
   hydrostatic,  ///< rho_0 |g| times the depth below the region's highest point against gravity
   zero,
@@ -119,6 +127,7 @@ struct Scene {
   std::string name;
   std::string description;
   std::optional<Tank> tank;
+  std::optional<Gate> gate;
   std::vector<FluidRegion> fluid;
   std::vector<Shape> obstacles;
   Method method;

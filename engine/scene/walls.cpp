@@ -46,6 +46,11 @@ double count_tank_walls(const Tank& tank, const Method& method) {
   return floor * (tank.open_top ? 1 : 2) + 2 * layers * rows;
 }
 
+Rectangle gate_body(const Gate& gate, const Method& method) {
+  const double thickness = static_cast<double>(wall_layers(method)) * method.spacing;
+  return {Vec(gate.x, 0.0), Vec(thickness, gate.height)};
+}
+
 std::vector<Vec> obstacle_walls(const std::vector<Shape>& obstacles, const Method& method) {
   const std::int64_t layers = wall_layers(method);
   std::vector<Vec> walls;

@@ -19,6 +19,9 @@ namespace sluice {
 /// How many tank_walls() makes; a double, so that an absurd tank gives a large number.
 [[nodiscard]] double count_tank_walls(const Tank& tank, const Method& method);
 
+/// What a gate fills: wall_layers() spacings to the right of its x, from the floor up.
+[[nodiscard]] Rectangle gate_body(const Gate& gate, const Method& method);
+
 /// Dummy particles of obstacles, m: at the cell centres of each, from a cell size stretched to fit
 /// a rectangle and from dx otherwise, no deeper than wall_layers() cells below the surface. Where
 /// obstacles overlap, the first one's particles stand.

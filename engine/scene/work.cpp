@@ -44,6 +44,7 @@ double count_wall_cells(const Scene& scene) {
   for (const Shape& shape : scene.obstacles) {
     sum += std::min(count_cells(shape, dx), perimeter(shape) / dx * layers);
   }
+  if (scene.gate) sum += count_cells(gate_body(*scene.gate, scene.method), dx);
   return sum;
 }
 

@@ -26,6 +26,9 @@ constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 constexpr std::uint32_t kManyNeighbours = 200;
 
+/// A coordinate in h that no kernel reaches, for a dummy particle that is none.
+double far_from_all(std::size_t slot) { return -1e8 * static_cast<double>(slot + 1); }
+
 /// Adds the wall time of its life to one pass.
 class PassClock {
  public:
@@ -76,6 +79,7 @@ class Engine final : public Solver::Impl {
   void keep_lists(const Motion& seen);
   [[nodiscard]] bool order_due() const;
   void sum_wall_pressure();
+  void lift_wall();
   void reinitialise();
   void sum_pairs(typename Sweeps<T>::Sweep loop);
   void run_sweep(typename Sweeps<T>::Sweep loop);
@@ -125,6 +129,11 @@ class Engine final : public Solver::Impl {
   PairArrays<T> walls_;
   AlignedArray<T> wall_excess_;
   std::vector<double> wall_hydrostatic_;  // of psi, per slot
+  struct LiftedParticle {
+    Vec place;
+    std::size_t slot;
+  };
+  std::vector<LiftedParticle> lifted_;  // dummy particles of the lifted wall that still stand
 };
 
 template <typename T>
@@ -148,6 +157,7 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
     constants_.friction_alpha = static_cast<T>(m.wall_friction->alpha);
     constants_.friction_epsilon = static_cast<T>(m.wall_friction->epsilon);
   }
+  constants_.two_nu = static_cast<T>(m.scaled_two_nu());
   const Vec gravity = m.gravity * m.smoothing_length / (m.sound_speed * m.sound_speed);
   constants_.gravity_x = static_cast<T>(gravity.x());
   constants_.gravity_y = static_cast<T>(gravity.y());
@@ -213,6 +223,9 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
     slot_x[s] = x[i];
     slot_y[s] = y[i];
     slot_id[s] = id[i];
+    if (method.lifted_wall && method.lifted_wall->place.contains(walls[i])) {
+      lifted_.push_back({walls[i], s});
+    }
   }
   wall_bounds_.assign_tiles(team_, grid_, wall_layout_, slot_x.data(), slot_y.data(),
                             slot_id.data());
@@ -222,9 +235,8 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
   for (std::size_t s = 0; s < slots; ++s) {
     const bool used = slot_id[s] >= 0.0;
     const Vec origin = grid_.tile_center(wall_bounds_.tile[s / kCluster]);
-    const double far = -1e8 * static_cast<double>(s + 1);
-    walls_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : far);
-    walls_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : far);
+    walls_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : far_from_all(s));
+    walls_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : far_from_all(s));
     walls_.volume[s] = T{1};
     if (walls_.diffused.size() > 0) {
       const Vec place(slot_x[s], slot_y[s]);
@@ -262,6 +274,7 @@ void Engine<T>::load(const SolverState& state) {
   particles = std::move(source);
   reorder(
       sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
+  lift_wall();
   bind();
   // Between sorts nobody counts: a state that is gone on with must not be judged otherwise.
   if (fresh) extremes.max_neighbours = most_neighbours();
@@ -608,6 +621,19 @@ Rates<T> Engine<T>::rates_of(const ParticleSpan& chunk, const SumBlocks& blocks)
           method.gravity};
 }
 
+/// Takes out what the lower edge of the lifted wall has passed: out of the kernel's reach, without
+/// pressure.
+template <typename T>
+void Engine<T>::lift_wall() {
+  std::erase_if(lifted_, [&](const LiftedParticle& p) {
+    if (!method.lifted_wall->has_passed(p.place, time)) return false;
+    walls_.x[p.slot] = walls_.y[p.slot] = static_cast<T>(far_from_all(p.slot));
+    walls_.excess[p.slot] = walls_.stress[p.slot] = T{0};
+    walls_.volume[p.slot] = T{1};
+    return true;
+  });
+}
+
 /// eq. 9, and from it the density, volume and stress of the dummy particles (eq. 3).
 template <typename T>
 void Engine<T>::sum_wall_pressure() {
@@ -732,6 +758,7 @@ void Engine<T>::step_leap_frog() {
   note_motion(motion);
   time += time_step;
   ++step_count;
+  lift_wall();
   order_due() ? sort() : keep_lists(motion);
 }
 
@@ -776,6 +803,7 @@ void Engine<T>::step_kick_drift_kick() {
   }));
   time += time_step;
   ++step_count;
+  lift_wall();
   if (order_due()) sort();
 }
 

@@ -48,6 +48,24 @@ struct WallFriction {
   double epsilon = 0.01;
 };
 
+/// Laminar viscous stress with no slip at walls (Morris et al. 1997): water's nu, or that of a
+/// turbulent flow (eddy viscosity). Unlike eq. 8 it does not depend on the particle distance.
+struct PhysicalViscosity {
+  double nu = 1e-6;  ///< kinematic viscosity, m^2/s
+};
+
+/// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,
+/// and go row by row as the lower edge passes them. Nothing of it is state: it follows from t.
+struct LiftedWall {
+  Box place;           ///< m
+  double speed = 0.0;  ///< upwards, m/s
+
+  /// Whether a dummy particle there is gone at time t.
+  [[nodiscard]] bool has_passed(const Vec& p, double t) const {
+    return place.contains(p) && p.y() < place.min.y() + speed * t;
+  }
+};
+
 /// Shepard density reinitialisation, eq. 10, every `interval` steps.
 struct Reinitialisation {
   int interval = 20;
@@ -74,8 +92,10 @@ struct Method {
   std::optional<DensityDiffusion> diffusion;
   std::optional<ArtificialViscosity> viscosity;
   std::optional<WallFriction> wall_friction;
+  std::optional<PhysicalViscosity> physical_viscosity;  ///< not beside wall_friction
   std::optional<Reinitialisation> reinitialisation;
   WallPressure wall_pressure = WallPressure::extrapolated;
+  std::optional<LiftedWall> lifted_wall;
   Box domain;                      ///< a particle that leaves it is retired
   std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
                                    ///< no open tank
@@ -91,6 +111,11 @@ struct Method {
   }
   /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
   [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }
+  /// 2 nu/(c h): the physical viscosity in the units of the sums; 0 without it.
+  [[nodiscard]] double scaled_two_nu() const {
+    return physical_viscosity ? 2.0 * physical_viscosity->nu / (sound_speed * smoothing_length)
+                              : 0.0;
+  }
   /// Distance at which W becomes zero, in smoothing lengths.
   [[nodiscard]] double support_ratio() const {
     return kernel == KernelKind::truncated_gaussian ? 3.0 : 2.0;

@@ -177,15 +177,19 @@ HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, const 
 /// Who gets the sums of a list: the particles i, or both of a pair.
 enum class Share { i_alone, both };
 
+/// What holds the fluid back at walls: nothing, eq. 8, or a stress that acts in the fluid as well.
+enum class Drag { none, wall_friction, physical_viscosity };
+
 /// Which terms a rate sweep sums.
 enum class Sums { density, acceleration, both };
-template <Sums kSums, bool kDiffusion, bool kViscosity, bool kFriction>
+template <Sums kSums, bool kDiffusion, bool kViscosity, Drag kDrag>
 struct Terms {
   static constexpr bool density = kSums != Sums::acceleration;
   static constexpr bool acceleration = kSums != Sums::density;
   static constexpr bool diffusion = density && kDiffusion;
   static constexpr bool viscosity = acceleration && kViscosity;
-  static constexpr bool friction = acceleration && kFriction;
+  static constexpr bool friction = acceleration && kDrag == Drag::wall_friction;
+  static constexpr bool physical = acceleration && kDrag == Drag::physical_viscosity;
   static constexpr SumBlocks blocks = !acceleration ? kDensitySums
                                       : !density    ? kAccelerationSums
                                                     : kRateSums;
@@ -203,6 +207,7 @@ template <class Shape, class Terms, bool kViscous, Share kShare, typename T, cla
 HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
                           const TileShift<T>& shift, V x_i, V y_i,
                           const ArtificialViscosityTerm<T>& viscosity,
+                          const PhysicalViscosityTerm<T>& physical,
                           const DensityDiffusionTerm<T>& diffusion, RateOfI<V>& i, T* sums) {
   const typename Blocks<T>::D d;
   const auto body = [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t part) HWY_ATTR {
@@ -232,6 +237,10 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       summand = summand * g;
       x_j = summand * dx;
       y_j = summand * dy;
+      if constexpr (Terms::physical) {
+        x_j = hn::NegMulAdd(g, physical.summand(d, i.u, load_j(other.u + j)), x_j);
+        y_j = hn::NegMulAdd(g, physical.summand(d, i.v, load_j(other.v + j)), y_j);
+      }
       i.x_sum = i.x_sum + x_j;
       i.y_sum = i.y_sum + y_j;
     }
@@ -249,7 +258,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
   for_each_pair(list, c, other, shift, x_i, y_i, body);
 }
 
-/// eqs. 4, 5, 7 and 8 for the clusters of a chunk.
+/// eqs. 4, 5, 7, 8 and the viscous stress for the clusters of a chunk.
 template <class Shape, class Terms, typename T>
 void sum_rates(const SweepTask<T>& task) {
   using B = Blocks<T>;
@@ -260,6 +269,7 @@ void sum_rates(const SweepTask<T>& task) {
   const DensityDiffusionTerm<T> diffusion{k.two_delta};
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon};
+  const PhysicalViscosityTerm<T> physical{k.two_nu};
   std::fill_n(task.sums, Terms::blocks.stride * task.to_fluid->places(), T{});
 
   for (std::size_t c = 0; c < task.clusters; ++c) {
@@ -279,11 +289,13 @@ void sum_rates(const SweepTask<T>& task) {
       if constexpr (Terms::acceleration) i.stress = load_i(self.stress + slot);
       i.density_sum = i.x_sum = i.y_sum = hn::Zero(d);
 
-      add_rates<Shape, Terms, Terms::viscosity, Share::both>(
-          *task.to_fluid, c, task.fluid, shift, x_i, y_i, viscosity, diffusion, i, task.sums);
+      add_rates<Shape, Terms, Terms::viscosity, Share::both>(*task.to_fluid, c, task.fluid, shift,
+                                                             x_i, y_i, viscosity, physical,
+                                                             diffusion, i, task.sums);
       if (task.to_wall != nullptr) {
-        add_rates<Shape, Terms, Terms::friction, Share::i_alone>(
-            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, diffusion, i, task.sums);
+        add_rates<Shape, Terms, Terms::friction, Share::i_alone>(*task.to_wall, c, task.wall, shift,
+                                                                 x_i, y_i, friction, physical,
+                                                                 diffusion, i, task.sums);
       }
       T* const sums = task.sums + Terms::blocks.stride * c + part;
       if constexpr (Terms::density) add_lanes(i.density_sum, sums + Terms::blocks.density);
@@ -433,13 +445,18 @@ std::size_t prune_list(const PruneTask<T>& task) {
 template <class Shape, Sums kSums, typename T>
 typename Sweeps<T>::Sweep select_rates(const Method& m) {
   const auto with = [&]<bool kDiffusion, bool kViscosity>() -> typename Sweeps<T>::Sweep {
-    return m.wall_friction ? &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, true>, T>
-                           : &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, false>, T>;
+    if (m.wall_friction) {
+      return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_friction>, T>;
+    }
+    return m.physical_viscosity
+               ? &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::physical_viscosity>,
+                            T>
+               : &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::none>, T>;
   };
   // What a sweep does not sum is not a choice: the same loop serves both, and is compiled once.
   if constexpr (kSums == Sums::density) {
-    return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, false, false>, T>
-                       : &sum_rates<Shape, Terms<kSums, false, false, false>, T>;
+    return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, false, Drag::none>, T>
+                       : &sum_rates<Shape, Terms<kSums, false, false, Drag::none>, T>;
   } else if constexpr (kSums == Sums::acceleration) {
     return m.viscosity ? with.template operator()<false, true>()
                        : with.template operator()<false, false>();

@@ -30,6 +30,7 @@ struct TermConstants {
   T two_delta{};
   T viscosity_alpha{}, viscosity_epsilon{1};
   T friction_alpha{}, friction_epsilon{1};
+  T two_nu{};
   T gravity_x{}, gravity_y{};
   T tile_size{};  ///< in h
 };
@@ -69,7 +70,7 @@ struct Sweeps {
 
   Sweep density_and_acceleration = nullptr;  ///< eqs. 4, 5, 7, 8 in one sweep
   Sweep density = nullptr;                   ///< eqs. 4, 7
-  Sweep acceleration = nullptr;              ///< eqs. 5, 8
+  Sweep acceleration = nullptr;              ///< eqs. 5, 8, viscous stress
   Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
   Sweep reinitialise = nullptr;              ///< eq. 10
   /// Keeps the candidates of which a particle may come within the cut-off of one of cluster i while

@@ -82,6 +82,21 @@ struct ArtificialViscosityTerm {
   }
 };
 
+/// Viscous stress, Morris et al. 1997, eq. 22: sum_j m (mu_i + mu_j)/(rho_i rho_j) x_ij . grad_i
+/// W_ij/|x_ij|^2 v_ij, with mu = rho_0 nu and both densities taken as rho_0. Since grad W =
+/// -g x_ij/h^4, neither a division nor a singularity is left. Walls take part with v_j = 0: no
+/// slip.
+template <typename T>
+struct PhysicalViscosityTerm {
+  T two_nu;  ///< 2 nu/(c h)
+
+  /// Summand before -g, for one component of the velocity.
+  template <class D, class V>
+  HWY_INLINE V summand(D d, V velocity_i, V velocity_j) const {
+    return hn::Set(d, two_nu) * (velocity_i - velocity_j);
+  }
+};
+
 /// Wall pressure, eq. 9: (sum_f p_f W + sum_f rho_f f . (x_w - x_f) W) / sum_f W. Summand before W,
 /// in units of rho_0 c^2.
 template <typename T>

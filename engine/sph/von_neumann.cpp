@@ -71,6 +71,7 @@ LatticeStability::LatticeStability(const Method& method, Surface surface)
     epsilon_ = method.viscosity->epsilon;
   }
   if (method.diffusion) delta_ = method.diffusion->delta;
+  two_nu_ = method.scaled_two_nu();
 
   const double support = method.support_ratio();
   const int reach = static_cast<int>(support / spacing_) + 1;
@@ -99,6 +100,7 @@ LatticeWave LatticeStability::wave(const Vec& k) const {
     w.diffusion += 2.0 * delta_ * difference;
     w.damping += kApproaching * alpha_ * difference / (n.distance.squaredNorm() + epsilon_) *
                  n.distance * n.distance.transpose();
+    w.damping += two_nu_ * difference * Eigen::Matrix2d::Identity();
   }
   if (integrator_ == Integrator::modified_leap_frog) {
     const Eigen::EigenSolver<Eigen::Matrix3d> solver(rate_matrix(w), /*computeEigenvectors=*/false);
@@ -175,6 +177,7 @@ CourantLimits courant_limits(const Method& method, Surface surface) {
   const LatticeStability all(method, surface);
   Method bare = method;
   bare.viscosity.reset();
+  bare.physical_viscosity.reset();
   bare.diffusion.reset();
   return {.scheme = all.courant_limit(),
           .sound = LatticeStability(bare, surface).courant_limit(),

@@ -10,13 +10,14 @@
 
 namespace sluice {
 
-/// What the sums of eqs. 4, 5, 7 and 8 make of a small plane wave exp(i k . x) on a square lattice
-/// at rest, in units of h and c. With velocity U and density s = i sigma the rates are
+/// What the sums of eqs. 4, 5, 7 and 8 and the physical viscosity make of a small plane wave exp(i
+/// k . x) on a square lattice at rest, in units of h and c. With velocity U and density s = i sigma
+/// the rates are
 ///   dU/dt = gradient sigma - damping U,  dsigma/dt = -gradient . U - diffusion sigma.
 struct LatticeWave {
   Vec wave_vector = Vec::Zero();                      ///< k h
   Vec gradient = Vec::Zero();                         ///< sum_j V_j slope X_ij sin(k . X_ij)
-  Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();  ///< of eq. 8
+  Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();  ///< of eq. 8 and physical viscosity
   double diffusion = 0.0;                             ///< of eq. 7
   std::array<std::complex<double>, 3> rates{};        ///< eigenvalues of the rates, c/h
 };
@@ -39,7 +40,7 @@ class LatticeStability {
   /// Largest C up to which no wave grows, to 1e-4; 0 where even C = 0.01 lets one grow;
   /// kMostCourant where there is none.
   [[nodiscard]] double courant_limit() const;
-  /// The same for eq. 8 alone and for eq. 7 alone.
+  /// The same for what damps velocities alone, eq. 8 and physical viscosity, and for eq. 7 alone.
   [[nodiscard]] double viscosity_limit() const;
   [[nodiscard]] double diffusion_limit() const;
 
@@ -63,7 +64,8 @@ class LatticeStability {
   double alpha_ = 0.0;
   double epsilon_ = 0.0;
   double delta_ = 0.0;
-  double spacing_;  ///< dx/h
+  double two_nu_ = 0.0;  ///< 2 nu/(c h)
+  double spacing_;       ///< dx/h
   std::vector<Neighbour> neighbours_;
   std::vector<LatticeWave> waves_;
   std::vector<SheetWave> sheets_;
@@ -73,7 +75,7 @@ class LatticeStability {
 struct CourantLimits {
   double scheme = 0.0;     ///< all terms of the method
   double sound = 0.0;      ///< pressure waves alone; 0 with the paper's integrator
-  double viscosity = 0.0;  ///< eq. 8 alone; kMostCourant without it
+  double viscosity = 0.0;  ///< eq. 8 and physical viscosity alone; kMostCourant without them
   double diffusion = 0.0;  ///< eq. 7 alone; kMostCourant without it
 };
 [[nodiscard]] CourantLimits courant_limits(const Method& method, Surface surface);

@@ -156,6 +156,8 @@ std::string scheme_text(const Scene& scene) {
   if (method.viscosity) text += fmt::format(", viscosity alpha {:g}", method.viscosity->alpha);
   if (method.wall_friction) {
     text += fmt::format(", wall friction alpha {:g}", method.wall_friction->alpha);
+  } else if (method.physical_viscosity) {
+    text += fmt::format(", nu {:g} m^2/s and no slip", method.physical_viscosity->nu);
   } else if (scene.tank || !scene.obstacles.empty()) {
     text += ", free slip";
   }
@@ -163,6 +165,7 @@ std::string scheme_text(const Scene& scene) {
   if (method.reinitialisation) {
     text += fmt::format(", reinitialisation every {} steps", method.reinitialisation->interval);
   }
+  if (scene.gate) text += fmt::format(", gate lifted at {:g} m/s", scene.gate->speed);
   return text;
 }
 

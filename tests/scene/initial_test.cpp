@@ -43,6 +43,20 @@ std::vector<Vec> positions(const Particles& particles) {
   return result;
 }
 
+TEST(InitialParticles, StandBehindAGateOfThreeLayersOfWallParticles) {
+  json text = base_scene();
+  const std::size_t without = create_particles(parsed(text)).walls.size();
+  text["gate"] = {{"x", 1.0}, {"height", 0.6}, {"speed", 3.46}};
+  const Scene scene = parsed(text);
+  const InitialParticles made = create_particles(scene);
+  EXPECT_EQ(made.state.particles.size(), 200U) << "the column touches the gate, no more";
+  ASSERT_EQ(made.walls.size(), without + 3 * 12);
+  for (std::size_t i = 0; i < made.walls.size(); ++i) {
+    EXPECT_EQ(scene.method.lifted_wall->place.contains(made.walls[i]), i >= without);
+  }
+  EXPECT_GT(smallest_distance(made.walls), 0.049);
+}
+
 TEST(InitialParticles, FillThePapersColumnWith200By100) {
   const Particles p = create_particles(example("dambreak-paper")).state.particles;
   ASSERT_EQ(p.size(), 20000U);

@@ -93,10 +93,24 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
 TEST(ParseScene, LeavesOutEachTermWithoutAKey) {
   const Scene s = parsed(base_scene());
   EXPECT_FALSE(s.method.diffusion || s.method.viscosity || s.method.wall_friction ||
-               s.method.reinitialisation);
+               s.method.physical_viscosity || s.method.reinitialisation || s.method.lifted_wall);
   EXPECT_TRUE(s.sensors.empty());
   EXPECT_TRUE(s.obstacles.empty());
   EXPECT_FALSE(s.frames || s.scales);
+}
+
+TEST(ParseScene, TurnsAGateIntoAWallOfThreeSpacingsThatIsLifted) {
+  json text = base_scene();
+  text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
+  text["numerics"]["physical_viscosity"] = {{"nu", 1e-4}};
+  const Scene s = parsed(text);
+  ASSERT_TRUE(s.gate && s.method.lifted_wall && s.method.physical_viscosity);
+  EXPECT_EQ(s.gate->height, 1.0) << "the tank's";
+  EXPECT_EQ(s.method.lifted_wall->place.min, Vec(1.0, 0.0));
+  EXPECT_NEAR(s.method.lifted_wall->place.max.x(), 1.15, 1e-12);
+  EXPECT_EQ(s.method.lifted_wall->place.max.y(), 1.0);
+  EXPECT_EQ(s.method.lifted_wall->speed, 3.46);
+  EXPECT_EQ(s.method.physical_viscosity->nu, 1e-4);
 }
 
 TEST(ParseScene, GivesAnEmptyTermItsDefaults) {

@@ -57,9 +57,16 @@ TEST(Plan, RunsWhatASceneNames) {
   text["numerics"] = json::parse(R"({"density_diffusion": {}, "artificial_viscosity": {},
                                      "wall_friction": {}, "reinitialisation": {}})");
   text["sensors"] = json::parse(R"([{"name": "e", "kind": "energy", "interval": 0.1}])");
+  text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   const Plan p = plan(parsed(text));
-  EXPECT_TRUE(p.passes_left_out.empty());
+  EXPECT_THAT(names(p.passes_left_out), ::testing::ElementsAre("physical_viscosity"))
+      << "which may not stand beside wall_friction";
   EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
+  EXPECT_EQ(reason(p.passes, "gate"), "key gate");
+  text["numerics"].erase("wall_friction");
+  text["numerics"]["physical_viscosity"] = json::object();
+  EXPECT_EQ(reason(plan(parsed(text)).passes, "physical_viscosity"),
+            "key numerics.physical_viscosity");
 }
 
 TEST(Plan, LeavesOutWallFrictionWhereThereIsNoWall) {
@@ -95,7 +102,7 @@ TEST(Plan, IsJsonWithAReasonForEachItem) {
 }
 
 TEST(Estimate, CountsWhatIsMade) {
-  for (const char* name : {"dambreak-paper", "dambreak-paper-coarse", "still-water"}) {
+  for (const char* name : {"dambreak", "dambreak-paper", "dambreak-paper-coarse", "still-water"}) {
     const auto path = testing::source_dir() / "schemas/examples" / (std::string(name) + ".json");
     const Scene scene = parsed(json::parse(testing::read_text(path)));
     const InitialParticles made = create_particles(scene);

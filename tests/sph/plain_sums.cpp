@@ -82,6 +82,8 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
     double a_size = m.gravity.norm();
     double d_rho = 0.0;
     double d_rho_size = 0.0;
+    // mu_i = mu_j = rho_0 nu, and the volumes of the viscous stress are those at rho_0.
+    const double rest_volume = m.spacing * m.spacing;
     const auto add = [&](const Vec& x_j, const Vec& v_j, double rho_j, double p_j, double pi_ij) {
       const Vec x_ij = fluid.x[i] - x_j;
       const Vec grad_W = -smoothing_slope(m, x_ij.norm()) * x_ij;
@@ -99,6 +101,13 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
       }
       a += force;
       a_size += force.norm();
+      if (m.physical_viscosity) {
+        // x_ij . grad W / |x_ij|^2 = -slope, also where x_ij = 0.
+        const Vec drag = -2.0 * m.physical_viscosity->nu * rest_volume *
+                         smoothing_slope(m, x_ij.norm()) * (fluid.v[i] - v_j);
+        a += drag;
+        a_size += drag.norm();
+      }
       d_rho += rate;
     };
     for (std::size_t j = 0; j < fluid.size(); ++j) {

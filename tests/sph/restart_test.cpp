@@ -125,6 +125,25 @@ TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
   }
 }
 
+/// The tank's right wall goes up by about half of its height within 60 steps.
+Method lifting(Method m) {
+  m.physical_viscosity = PhysicalViscosity{0.01};
+  m.wall_friction.reset();
+  m.lifted_wall = LiftedWall{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
+  return m;
+}
+
+TEST_P(ThreadsAndRestart, AStopWhileAWallIsLiftedGivesTheSameBits) {
+  const Method m = lifting(method());
+  const Whole run = uninterrupted(m, 60);
+  const double edge = -1.6 + 15.0 * run.end.time;
+  EXPECT_GT(edge, -1.0);
+  EXPECT_LT(edge, 1.0);
+  std::vector<std::uint64_t> all(60);
+  std::iota(all.begin(), all.end(), 0U);
+  expect_same_bits(in_parts(m, 60, all), run.end, "60 stops");
+}
+
 TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
   const Method m = method();
   Solver watched(m, start_from(splash()), tank(), {});

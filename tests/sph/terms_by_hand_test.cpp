@@ -182,6 +182,41 @@ TEST(WallFrictionTerm, ActsAgainstWallsOnly) {
   EXPECT_EQ(rates.acceleration[2].norm(), 0.0);
 }
 
+TEST(PhysicalViscosityTerm, DragsAPairTogetherAndAParticleToRestAtAWall) {
+  Method m = plain_method();
+  m.physical_viscosity = PhysicalViscosity{0.3};
+  Fluid fluid;
+  fluid.add({0.0, 0.0}, {3.0, 1.0}, 0.0);
+  fluid.add({kH, 0.0}, {-1.0, 1.0}, 0.0);
+  fluid.add({0.0, 1.0 + 0.5 * kH}, {2.0, -5.0}, 0.0);
+  const auto rates = rates_at_start(m, fluid, {{0.0, 1.0 - 0.5 * kH}});
+  // 2 nu V (x_ij . grad W)/|x_ij|^2 v_ij with V = h^2, |x_ij| = h and x_ij . grad W < 0.
+  const double drag = 2.0 * 0.3 * kH * grad_W(1.0);
+  EXPECT_CLOSE(rates.acceleration[0].x(), -4.0 * drag);
+  EXPECT_CLOSE(rates.acceleration[1].x(), 4.0 * drag);
+  EXPECT_EQ(rates.acceleration[0].y(), 0.0);
+  EXPECT_CLOSE(rates.acceleration[2].x(), -2.0 * drag);
+  EXPECT_CLOSE(rates.acceleration[2].y(), 5.0 * drag);
+}
+
+TEST(PhysicalViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
+  // nu d2u/dy2 = -2 nu for u = -y^2; on a lattice of dx = h/1.5 the sum is that to 2 %.
+  Method m = plain_method();
+  m.kernel = KernelKind::wendland_c2;
+  m.spacing = m.smoothing_length / 1.5;
+  m.physical_viscosity = PhysicalViscosity{0.3};
+  Fluid fluid;
+  for (int row = -6; row <= 6; ++row) {
+    for (int column = -6; column <= 6; ++column) {
+      const Vec place = m.spacing * Vec(column, row);
+      fluid.add(place, {-place.y() * place.y(), 0.0}, 0.0);
+    }
+  }
+  const Vec middle = rates_at_start(m, fluid, {}).acceleration[fluid.size() / 2];
+  EXPECT_NEAR(middle.x(), -2.0 * 0.3, 0.02 * 2.0 * 0.3);
+  EXPECT_NEAR(middle.y(), 0.0, 1e-9);
+}
+
 /// Wall pressures at the start.
 std::vector<double> wall_pressures(Method m, const Fluid& fluid, const std::vector<Vec>& walls) {
   m.integrator = Integrator::kick_drift_kick;

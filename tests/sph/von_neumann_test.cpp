@@ -84,6 +84,20 @@ TEST(LatticeStability, ViscosityLimitGoesWithOneOverAlphaAndBoundsTheScheme) {
   }
 }
 
+TEST(LatticeStability, PhysicalViscosityAllowsTwoOverItsFastestRateAndHalfOfThatWithTheLeapFrog) {
+  // As for diffusion, with 2 nu/(c h) for 2 delta: the stress damps each velocity component alike.
+  constexpr double kTwoNu = 1.0;
+  const double rate = kTwoNu * 2 * std::numbers::inv_pi * 2 * (4 * std::exp(-1) + 8 * std::exp(-5));
+  for (const Integrator integrator : kIntegrators) {
+    Method m = bare(integrator);
+    m.physical_viscosity = PhysicalViscosity{0.5 * kTwoNu * m.sound_speed * m.smoothing_length};
+    const CourantLimits limits = courant_limits(m, Surface::free);
+    const double on_axis = integrator == Integrator::kick_drift_kick ? 2.0 : 1.0;
+    EXPECT_NEAR(limits.viscosity, on_axis / rate, 0.002 * on_axis / rate);
+    EXPECT_LE(limits.scheme, limits.viscosity * 1.001);
+  }
+}
+
 TEST(LatticeStability, IsOneWaveLessStableJustAboveTheLimitAndNotBelow) {
   for (const KernelKind kernel : {KernelKind::truncated_gaussian, KernelKind::wendland_c2}) {
     for (const Integrator integrator : kIntegrators) {

@@ -85,7 +85,7 @@ def check_paper(checks, report):
 def check_recommended(checks, report):
     evidence = report.get("evidence") or {}
     checks.between("recommended: state completed", float(path(report, "outcome", "state") == "completed"), 1, 1)
-    checks.between("recommended: mean relative L2 of P1-P4", evidence.get("mean_relative_l2"), 0, 0.22)
+    checks.between("recommended: mean relative L2 of P1-P4", evidence.get("mean_relative_l2"), 0, 0.20)
     checks.between("recommended: particles that leaked", path(report, "outcome", "retired", "leaked"), 0, 0)
 
 
