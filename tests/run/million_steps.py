@@ -1,0 +1,145 @@
+"""Still water for a million steps with kills at random instants: no bit may differ from the run
+that nobody disturbed, and what drifts is told.
+
+usage: million_steps.py SLUICE SCENE... [--steps N] [--kills N] [--seed N]
+
+Of each scene only the numerics and the smoothing length over the particle distance are taken, for a
+tank of 0.2 m x 0.1 m of water with 200 particles.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+
+GRAVITY = 9.81  # m/s^2
+DENSITY = 1000.0  # kg/m^3
+WIDTH, DEPTH = 0.2, 0.1  # m
+SPACING = 0.01  # m
+STOPPED = 85
+CHECKPOINTS = 200
+SAMPLES = 2000
+
+
+def still_water(example, steps):
+    """A tank at rest with the scheme of an example, too long to end by itself."""
+    sound = 10 * math.sqrt(2 * GRAVITY * DEPTH)
+    ratio = example["resolution"]["smoothing_ratio"]
+    numerics = example["numerics"]
+    time = steps * numerics["courant"] * ratio * SPACING / sound  # s, with steps as long as at rest
+    return {
+        "name": "still",
+        "tank": {"width": WIDTH, "height": 1.5 * DEPTH},
+        "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [WIDTH, DEPTH]}],
+        "gravity": [0, -GRAVITY],
+        "material": {"density": DENSITY, "sound_speed": sound},
+        "resolution": {"spacing": SPACING, "smoothing_ratio": ratio},
+        "numerics": numerics,
+        "sensors": [
+            {"name": "floor", "kind": "pressure", "position": [0.5 * WIDTH, 0],
+             "interval": time / SAMPLES},
+            {"name": "energy", "kind": "energy", "interval": time / SAMPLES},
+        ],
+        "end_time": 2 * time,
+    }
+
+
+def command(sluice, target, folder, steps):
+    return [sluice, "run", target, *folder, "--threads", "1", "--progress", "json",
+            "--stop-after-step", str(steps), "--checkpoint-every", str(max(1, steps // CHECKPOINTS))]
+
+
+def outcome_of(folder, steps):
+    path = folder / "outcome.json"
+    if not path.exists():
+        sys.exit(f"{folder.name}: the scene was refused")
+    outcome = json.loads(path.read_text())
+    if outcome["exit_code"] != STOPPED or outcome["step"] != steps:
+        sys.exit(f"{folder.name}: {outcome['state']} at step {outcome['step']}: {outcome['reason']}")
+    return outcome
+
+
+def undisturbed(sluice, scene, folder, steps):
+    """Returns the outcome and the seconds that the run took."""
+    start = time.monotonic()
+    subprocess.run(command(sluice, scene, ["--folder", str(folder)], steps), check=False,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return outcome_of(folder, steps), time.monotonic() - start
+
+
+def disturbed(sluice, scene, folder, steps, delays):
+    """Kills the run after each of the delays. Returns the outcome and the steps gone on from."""
+    resumed = []
+    target, where = scene, ["--folder", str(folder)]
+    for delay in [*delays, None]:
+        process = subprocess.Popen(command(sluice, target, where, steps), text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        first = json.loads(process.stdout.readline())
+        if first["event"] == "resumed":
+            resumed.append(first["step"])
+        if delay is not None:
+            time.sleep(delay)
+            process.kill()
+        process.stdout.read()
+        if process.wait() == STOPPED and delay is not None:
+            sys.exit("the run ended before its last kill: ask for more steps")
+        if folder.is_dir():
+            target, where = str(folder), []
+    return outcome_of(folder, steps), resumed
+
+
+def drift(folder):
+    """Of the last twentieth of the run: floor pressure over rho g H, and energy over rho g H^2 W."""
+    checkpoint = max(folder.glob("checkpoint-*.h5"))
+    with h5py.File(checkpoint) as file:
+        last = SAMPLES // 20
+        floor = file["series/0000/values"][-last:, 0].mean() / (DENSITY * GRAVITY * DEPTH)
+        energy = file["series/0001/values"][:]
+        columns = list(file["series/0001"].attrs["columns"])
+        scale = DENSITY * GRAVITY * DEPTH**2 * WIDTH
+        kinetic = energy[-last:, columns.index("kinetic")].mean() / scale
+        total = sum(energy[:, columns.index(name)] for name in ("kinetic", "potential", "internal"))
+        change = (total[-last:].mean() - total[0]) / scale
+        return {"floor pressure": floor, "kinetic energy": kinetic, "energy change": change,
+                "particles": file["particles"].attrs["count"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sluice")
+    parser.add_argument("scene", type=pathlib.Path, nargs="+")
+    parser.add_argument("--steps", type=int, default=1_000_000)
+    parser.add_argument("--kills", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    dice = random.Random(arguments.seed)
+    failed = False
+    for example in arguments.scene:
+        with tempfile.TemporaryDirectory(prefix="sluice-still-") as name:
+            root = pathlib.Path(name)
+            scene = root / "scene.json"
+            scene.write_text(json.dumps(still_water(json.loads(example.read_text()),
+                                                    arguments.steps)))
+            calm, seconds = undisturbed(arguments.sluice, scene, root / "calm", arguments.steps)
+            longest = 1.6 * seconds / (arguments.kills + 1)
+            delays = [dice.uniform(0, longest) for _ in range(arguments.kills)]
+            storm, resumed = disturbed(arguments.sluice, scene, root / "storm", arguments.steps,
+                                       delays)
+            same = storm["digests"] == calm["digests"]
+            failed |= not same or storm["retired"] != {"overtopped": 0, "leaked": 0}
+            figures = ", ".join(f"{key} {value:.4g}" for key, value in drift(root / "storm").items())
+            print(f"{example.name}: {arguments.steps} steps, {arguments.kills} kills, gone on "
+                  f"{len(resumed)} times from steps up to {max(resumed, default=0)}: "
+                  f"{'same digests' if same else 'DIGESTS DIFFER'}; {figures}", flush=True)
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
