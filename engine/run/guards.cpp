@@ -18,6 +18,11 @@ constexpr std::string_view kSmallerStep =
     "lower numerics.courant, or use the kick_drift_kick integrator with artificial viscosity and "
     "density diffusion";
 
+constexpr std::string_view kSlowerFlow =
+    "raise material.sound_speed where the flow itself is that fast, else lower numerics.courant, "
+    "or "
+    "use the kick_drift_kick integrator with artificial viscosity and density diffusion";
+
 Finding not_finite(const GuardLimits&, const StepFacts& facts) {
   const bool finite = facts.extremes.finite && std::isfinite(facts.time_step);
   if (finite) return {};
@@ -40,7 +45,7 @@ Finding too_thin(const GuardLimits& limits, const StepFacts& facts) {
 
 Finding too_fast(const GuardLimits& limits, const StepFacts& facts) {
   if (facts.extremes.max_speed <= limits.speed) return {};
-  return Breach{facts.extremes.max_speed, limits.speed, kSmallerStep};
+  return Breach{facts.extremes.max_speed, limits.speed, kSlowerFlow};
 }
 
 Finding step_collapsed(const GuardLimits& limits, const StepFacts& facts) {

@@ -176,7 +176,9 @@ void describe_numerics(Archive& a, Method& method) {
   a.word("kernel", kKernelWords, method.kernel, {.about = "smoothing function W"});
   a.word("integrator", kIntegratorWords, method.integrator, {.about = "time integration"});
   a.number("courant", method.courant,
-           {.about = "Courant number C of the time step, eq. 18", .range = above(0, 2)});
+           {.about = "Courant number C of the time step, eq. 18; impacts need it below 0.62 of the "
+                     "limit that linear analysis gives for particles at rest (sluice plan)",
+            .range = above(0, 2)});
   a.word("precision", kPrecisionWords, method.precision, {.about = "arithmetic"});
   a.section("density_diffusion", method.diffusion,
             {.about = "density diffusion D_i, eq. 7", .otherwise = "no diffusion"});

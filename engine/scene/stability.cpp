@@ -59,6 +59,7 @@ StabilityPrediction predict_stability(const Scene& scene) {
   StabilityPrediction p;
   p.courant = m.courant;
   p.courant_limit = limits.scheme;
+  p.flow_limit = kDisorderShare * limits.scheme;
   p.margin = limits.scheme / m.courant - 1.0;
   const double growth = analysis.spectral_radius(m.courant) - 1.0;
   p.growth_per_step = growth > LatticeStability::kTolerance ? growth : 0.0;
@@ -74,11 +75,15 @@ StabilityPrediction predict_stability(const Scene& scene) {
 }
 
 std::string stability_text(const StabilityPrediction& p) {
-  const std::string limit = p.courant_limit > 0.0 ? fmt::format("at most {:.3g}", p.courant_limit)
-                                                  : "none that is stable";
+  const std::string limit =
+      p.courant_limit > 0.0 ? fmt::format("at most {:.3g} for particles at rest", p.courant_limit)
+                            : "none that is stable";
   std::string text = fmt::format("Courant number {:.3g} of {}: ", p.courant, limit);
   if (p.outlook == Outlook::stable) {
-    return text + fmt::format("stable, margin {:.0f} %", 100.0 * p.margin);
+    text += fmt::format("stable, margin {:.0f} %", 100.0 * p.margin);
+    if (p.courant <= p.flow_limit) return text;
+    return text + fmt::format("; where an impact throws them about it may fail above {:.3g}",
+                              p.flow_limit);
   }
   return text + fmt::format("{}, errors at rest grow by 10^{:.2g} over the run",
                             to_string(p.outlook), p.growth_decades);
@@ -88,6 +93,7 @@ std::string stability_json(const StabilityPrediction& p) {
   return nlohmann::ordered_json{{"outlook", to_string(p.outlook)},
                                 {"courant", p.courant},
                                 {"courant_limit", p.courant_limit},
+                                {"flow_limit", p.flow_limit},
                                 {"margin", p.margin},
                                 {"growth_per_step", p.growth_per_step},
                                 {"growth_decades", p.growth_decades},

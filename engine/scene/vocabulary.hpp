@@ -50,7 +50,8 @@ inline constexpr Words<Precision, 2> kPrecisionWords{{
 }};
 inline constexpr Words<DiffusionKind, 2> kDiffusionWords{{
     {"molteni_colagrossi", DiffusionKind::molteni_colagrossi, "of the density"},
-    {"fourtakas", DiffusionKind::fourtakas, "of the density less its hydrostatic part"},
+    {"fourtakas", DiffusionKind::fourtakas,
+     "of the density less its hydrostatic part, between fluid particles"},
 }};
 inline constexpr Words<WallPressure, 2> kWallPressureWords{{
     {"extrapolated", WallPressure::extrapolated, "may be negative"},

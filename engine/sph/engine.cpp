@@ -128,7 +128,6 @@ class Engine final : public Solver::Impl {
   ClusterBounds wall_bounds_;
   PairArrays<T> walls_;
   AlignedArray<T> wall_excess_;
-  std::vector<double> wall_hydrostatic_;  // of psi, per slot
   struct LiftedParticle {
     Vec place;
     std::size_t slot;
@@ -148,7 +147,10 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
   simd_target = sweeps_.target;
 
   constants_.tile_size = static_cast<T>(grid_.tile_size() / m.smoothing_length);
-  if (m.diffusion) constants_.two_delta = static_cast<T>(2.0 * m.diffusion->delta);
+  if (m.diffusion) {
+    constants_.two_delta = static_cast<T>(2.0 * m.diffusion->delta);
+    constants_.two_delta_wall = m.diffusion->with_walls() ? constants_.two_delta : T{0};
+  }
   if (m.viscosity) {
     constants_.viscosity_alpha = static_cast<T>(m.viscosity->alpha);
     constants_.viscosity_epsilon = static_cast<T>(m.viscosity->epsilon);
@@ -172,9 +174,6 @@ void Engine<T>::resize_pairs(PairArrays<T>& arrays, std::size_t slots) const {
                   &arrays.stress}) {
     a->resize(slots);
   }
-  // Molteni-Colagrossi diffuses the excess itself: no field of its own.
-  const bool own = method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas;
-  if (own) arrays.diffused.resize(slots);
 }
 
 template <typename T>
@@ -231,18 +230,12 @@ void Engine<T>::place_walls(const std::vector<Vec>& walls) {
                             slot_id.data());
   wall_bounds_.assign_boxes(team_, wall_layout_, method, leeway<double>(),
                             {slot_x.data(), slot_y.data(), nullptr, nullptr, slot_id.data()});
-  if (walls_.diffused.size() > 0) wall_hydrostatic_.assign(slots, 0.0);
   for (std::size_t s = 0; s < slots; ++s) {
     const bool used = slot_id[s] >= 0.0;
     const Vec origin = grid_.tile_center(wall_bounds_.tile[s / kCluster]);
     walls_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : far_from_all(s));
     walls_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : far_from_all(s));
     walls_.volume[s] = T{1};
-    if (walls_.diffused.size() > 0) {
-      const Vec place(slot_x[s], slot_y[s]);
-      wall_hydrostatic_[s] =
-          used ? scales().hydrostatic.dot(place) - scales().hydrostatic_middle : 0.0;
-    }
   }
 }
 
@@ -454,6 +447,9 @@ void Engine<T>::bind() {
   origin_y_.resize(layout.clusters());
   scales_ = scales();
   resize_pairs(pairs_, slots);
+  // Molteni-Colagrossi diffuses the excess itself: no field of its own.
+  const bool own = method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas;
+  if (own) pairs_.diffused.resize(slots);
   for (auto* a : {&tracks_.x, &tracks_.y, &tracks_.u, &tracks_.v}) a->resize(slots);
   for_chunks([&](const ParticleSpan& p, Motion&) {
     for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
@@ -657,12 +653,6 @@ void Engine<T>::sum_wall_pressure() {
       walls_.excess[s] = excess;
       walls_.volume[s] = volume;
       walls_.stress[s] = excess * volume * volume;
-    }
-    if (walls_.diffused.size() > 0) {
-      for (std::size_t s = begin; s < begin + kCluster * task.clusters; ++s) {
-        walls_.diffused[s] =
-            static_cast<T>(static_cast<double>(walls_.excess[s]) - wall_hydrostatic_[s]);
-      }
     }
   });
 }

@@ -267,6 +267,7 @@ void sum_rates(const SweepTask<T>& task) {
   const TermConstants<T>& k = *task.constants;
   const TileShift<T> shift(k.tile_size);
   const DensityDiffusionTerm<T> diffusion{k.two_delta};
+  const DensityDiffusionTerm<T> wall_diffusion{k.two_delta_wall};
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon};
   const PhysicalViscosityTerm<T> physical{k.two_nu};
@@ -295,7 +296,7 @@ void sum_rates(const SweepTask<T>& task) {
       if (task.to_wall != nullptr) {
         add_rates<Shape, Terms, Terms::friction, Share::i_alone>(*task.to_wall, c, task.wall, shift,
                                                                  x_i, y_i, friction, physical,
-                                                                 diffusion, i, task.sums);
+                                                                 wall_diffusion, i, task.sums);
       }
       T* const sums = task.sums + Terms::blocks.stride * c + part;
       if constexpr (Terms::density) add_lanes(i.density_sum, sums + Terms::blocks.density);

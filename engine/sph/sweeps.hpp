@@ -28,6 +28,7 @@ struct PairView {
 template <typename T>
 struct TermConstants {
   T two_delta{};
+  T two_delta_wall{};  ///< 0 where nothing is diffused between fluid and walls
   T viscosity_alpha{}, viscosity_epsilon{1};
   T friction_alpha{}, friction_epsilon{1};
   T two_nu{};

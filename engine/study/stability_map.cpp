@@ -40,17 +40,17 @@ Method method_of(Integrator integrator, double alpha, double delta) {
   return m;
 }
 
-SolverState noisy_patch(const Method& m) {
+SolverState noisy_patch(const Method& m, double displacement) {
   SolverState state;
   Particles& p = state.particles;
   std::mt19937_64 random(1);
-  const auto noise = [&] {
-    return kNoise * m.sound_speed * (static_cast<double>(random() >> 11U) * 0x1p-52 - 1.0);
-  };
+  const auto either_way = [&] { return static_cast<double>(random() >> 11U) * 0x1p-52 - 1.0; };
+  const auto noise = [&] { return kNoise * m.sound_speed * either_way(); };
+  const auto off = [&] { return displacement > 0.0 ? displacement * either_way() : 0.0; };
   for (int i = 0; i < kSide * kSide; ++i) {
     p.id.push_back(i);
-    p.x.push_back(m.spacing * (i % kSide));
-    p.y.push_back(m.spacing * (i / kSide));
+    p.x.push_back(m.spacing * (i % kSide + off()));
+    p.y.push_back(m.spacing * (i / kSide + off()));
     p.vx.push_back(noise());
     p.vy.push_back(noise());
     p.density_excess.push_back(0.0);
@@ -125,12 +125,12 @@ std::string row_svg(const StabilityRow& row, double y) {
 
 }  // namespace
 
-NoiseGrowth measure_noise(const Method& method, int most_steps) {
+NoiseGrowth measure_noise(const Method& method, int most_steps, double displacement) {
   Method m = method;
   const double far = 10.0 * kSide * m.spacing;
   m.domain = {Vec::Constant(-far), Vec::Constant(far)};
   m.gravity = Vec::Zero();
-  Solver solver(m, noisy_patch(m), {}, {});
+  Solver solver(m, noisy_patch(m, displacement), {}, {});
   const double start = solver.extremes().max_speed;
   NoiseGrowth growth;
   while (growth.steps < most_steps && !growth.grows) {

@@ -11,12 +11,14 @@ namespace sluice {
 
 /// What small noise on a free patch of 20 x 20 lattice particles at rest does in a run: no walls,
 /// no gravity, double precision, velocities of 1e-9 c, so that nothing but the linear scheme acts.
+/// With `displacement` the particles stand up to that many spacings off the lattice, either way.
 struct NoiseGrowth {
   bool grows = false;   ///< beyond a hundredfold
   double factor = 0.0;  ///< largest speed at the end over that at the start
   int steps = 0;        ///< until it had grown beyond doubt, or `most_steps`
 };
-[[nodiscard]] NoiseGrowth measure_noise(const Method& method, int most_steps);
+[[nodiscard]] NoiseGrowth measure_noise(const Method& method, int most_steps,
+                                        double displacement = 0.0);
 
 /// One cell of the map.
 struct StabilityCell {

@@ -15,6 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 Json still_tank(const Json& numerics) {
   return Json{{"name", "tank"},
@@ -80,6 +81,20 @@ TEST(StabilityPrediction, MarginIsWhatTheCourantNumberMayStillGrowBy) {
   EXPECT_EQ(p.outlook, Outlook::stable);
   EXPECT_DOUBLE_EQ(p.courant * (1.0 + p.margin), p.courant_limit);
   EXPECT_EQ(p.growth_decades, 0.0);
+}
+
+TEST(StabilityPrediction, SaysAboveWhichCourantNumberAnImpactMayFail) {
+  const double limit = prediction_of(still_tank(damped("kick_drift_kick", 1.0))).courant_limit;
+  const double flow_limit = kDisorderShare * limit;
+  const StabilityPrediction calm =
+      prediction_of(still_tank(damped("kick_drift_kick", 0.99 * flow_limit)));
+  EXPECT_DOUBLE_EQ(calm.flow_limit, kDisorderShare * calm.courant_limit);
+  EXPECT_THAT(stability_text(calm), Not(HasSubstr("impact")));
+  const StabilityPrediction bold =
+      prediction_of(still_tank(damped("kick_drift_kick", 1.01 * flow_limit)));
+  EXPECT_EQ(bold.outlook, Outlook::stable);
+  EXPECT_THAT(stability_text(bold),
+              HasSubstr("where an impact throws them about it may fail above"));
 }
 
 TEST(StabilityPrediction, ForceLimitIsAQuarterOfTheRootInUnitsOfTheSoundStep) {

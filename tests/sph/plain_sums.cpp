@@ -84,14 +84,15 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
     double d_rho_size = 0.0;
     // mu_i = mu_j = rho_0 nu, and the volumes of the viscous stress are those at rho_0.
     const double rest_volume = m.spacing * m.spacing;
-    const auto add = [&](const Vec& x_j, const Vec& v_j, double rho_j, double p_j, double pi_ij) {
+    const auto add = [&](const Vec& x_j, const Vec& v_j, double rho_j, double p_j, double pi_ij,
+                         bool diffuses) {
       const Vec x_ij = fluid.x[i] - x_j;
       const Vec grad_W = -smoothing_slope(m, x_ij.norm()) * x_ij;
       const double volume_j = mass / rho_j;
       const Vec force = -mass * (p_i / (rho_i * rho_i) + p_j / (rho_j * rho_j) + pi_ij) * grad_W;
       double rate = rho_i * volume_j * (fluid.v[i] - v_j).dot(grad_W);
       d_rho_size += std::abs(rate);
-      if (m.diffusion) {
+      if (m.diffusion && diffuses) {
         // x_ji . grad W / |x_ij|^2 = slope, also where x_ij = 0.
         const double diffusion = 2.0 * m.diffusion->delta * h * c *
                                  diffused_difference(m, rho_i, rho_j, x_ij) *
@@ -117,7 +118,7 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
           m.viscosity ? viscous_pressure(m.viscosity->alpha, m.viscosity->epsilon, m, rho_i, rho_j,
                                          fluid.v[i] - fluid.v[j], fluid.x[i] - fluid.x[j])
                       : 0.0;
-      add(fluid.x[j], fluid.v[j], rho_j, c * c * fluid.excess[j], pi_ij);
+      add(fluid.x[j], fluid.v[j], rho_j, c * c * fluid.excess[j], pi_ij, true);
     }
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const double rho_w = wall_density(m, wall_pressure[w]);
@@ -125,7 +126,8 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
           m.wall_friction ? viscous_pressure(m.wall_friction->alpha, m.wall_friction->epsilon, m,
                                              rho_i, rho_w, fluid.v[i], fluid.x[i] - walls[w])
                           : 0.0;
-      add(walls[w], Vec::Zero(), rho_w, wall_pressure[w], pi_iw);
+      const bool diffuses = m.diffusion && m.diffusion->kind == DiffusionKind::molteni_colagrossi;
+      add(walls[w], Vec::Zero(), rho_w, wall_pressure[w], pi_iw, diffuses);
     }
     out.acceleration.push_back(a);
     out.density.push_back(d_rho);

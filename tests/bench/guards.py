@@ -1,0 +1,68 @@
+"""What the guards of a run cost, in instructions, so that the load of the machine does not matter.
+
+usage: guards.py SLUICE SCENE... [--steps N]
+
+Each scene runs for some steps under callgrind (valgrind; AVX2, which it can run), and the
+instructions of Simulation::step() are told apart: what the run asks and sums for its guards alone
+(all but the solver's step and the sensors), and the engine's pass `measure`, which the guards share
+with the time step (largest speed) and with the domain (who left it).
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+PARTS = {
+    "step": r"sluice::Simulation::step\(\)",
+    "solver": r"sluice::Solver::step\(\)",
+    "sensors": r"sluice::Simulation::sample\(\)",
+    "measure": r"::measure\(sluice::ParticleSpan const&, sluice::Method const&, ",
+}
+ALLOWED = 0.01  # of a step's instructions, for what is the guards' alone
+
+
+def instructions(sluice, scene, steps):
+    """Instructions of each part, with what it calls."""
+    with tempfile.TemporaryDirectory(prefix="sluice-guards-") as name:
+        out = pathlib.Path(name) / "callgrind.out"
+        subprocess.run(
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", sluice, "run", scene,
+             "--folder", f"{name}/job", "--threads", "1", "--simd", "AVX2", "--progress", "none",
+             "--no-checkpoint", "--stop-after-step", str(steps)],
+            check=False, capture_output=True)
+        if not out.exists():
+            sys.exit("callgrind left nothing: is valgrind installed, and the scene valid?")
+        listing = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", out],
+                                 check=True, capture_output=True, text=True).stdout
+    counts = {}
+    for part, pattern in PARTS.items():
+        found = re.search(r"^\s*([\d,]+) .*" + pattern, listing, re.MULTILINE)
+        counts[part] = int(found[1].replace(",", "")) if found else 0
+    return counts
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sluice")
+    parser.add_argument("scene", nargs="+")
+    parser.add_argument("--steps", type=int, default=100)
+    arguments = parser.parse_args()
+    failed = False
+    for scene in arguments.scene:
+        count = instructions(arguments.sluice, scene, arguments.steps)
+        whole = count["step"]
+        if not whole or not count["measure"]:
+            sys.exit(f"callgrind did not see the steps of {scene}")
+        alone = (whole - count["solver"] - count["sensors"]) / whole
+        shared = count["measure"] / whole
+        failed |= alone > ALLOWED
+        print(f"{pathlib.Path(scene).name}: {whole / arguments.steps / 1e6:.2f} million instructions "
+              f"a step; guards alone {100 * alone:.2f} %, the pass they share {100 * shared:.2f} %")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
