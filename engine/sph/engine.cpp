@@ -29,6 +29,13 @@ constexpr std::uint32_t kManyNeighbours = 200;
 /// A coordinate in h that no kernel reaches, for a dummy particle that is none.
 double far_from_all(std::size_t slot) { return -1e8 * static_cast<double>(slot + 1); }
 
+/// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source, which
+/// lifts still water for ever. Only where the hydrostatic part is diffused as well must the walls
+/// hold against it.
+bool diffuses_with_walls(const DensityDiffusion& term) {
+  return term.kind == DiffusionKind::molteni_colagrossi;
+}
+
 /// Adds the wall time of its life to one pass.
 class PassClock {
  public:
@@ -149,7 +156,7 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
   constants_.tile_size = static_cast<T>(grid_.tile_size() / m.smoothing_length);
   if (m.diffusion) {
     constants_.two_delta = static_cast<T>(2.0 * m.diffusion->delta);
-    constants_.two_delta_wall = m.diffusion->with_walls() ? constants_.two_delta : T{0};
+    constants_.two_delta_wall = diffuses_with_walls(*m.diffusion) ? constants_.two_delta : T{0};
   }
   if (m.viscosity) {
     constants_.viscosity_alpha = static_cast<T>(m.viscosity->alpha);

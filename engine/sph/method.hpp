@@ -26,19 +26,14 @@ enum class Precision { mixed, double_precision };
 
 /// What is diffused by the density diffusion term D_i.
 enum class DiffusionKind {
-  molteni_colagrossi,  ///< eq. 7: the density, walls included
-  fourtakas,           ///< the density less its hydrostatic part, between fluid particles only
+  molteni_colagrossi,  ///< eq. 7: the density
+  fourtakas,           ///< the density less its hydrostatic part
 };
 
 /// D_i of eq. 7 with the neighbour's volume; `delta` is dimensionless.
 struct DensityDiffusion {
   DiffusionKind kind = DiffusionKind::molteni_colagrossi;
   double delta = 0.1;
-
-  /// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source,
-  /// which lifts still water by 5 % of its energy in 4000 sqrt(H/g) at ten particles per depth.
-  /// Only where the hydrostatic part is diffused too must the walls hold against it.
-  [[nodiscard]] bool with_walls() const { return kind == DiffusionKind::molteni_colagrossi; }
 };
 
 /// Pi_ij of eq. 8; `alpha` and `epsilon` are dimensionless.
