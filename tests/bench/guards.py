@@ -2,13 +2,14 @@
 
 usage: guards.py SLUICE SCENE... [--steps N]
 
-Each scene runs for some steps under callgrind (valgrind; AVX2, which it can run), and the
+Each scene, less its sensors, runs for some steps under callgrind (valgrind; AVX2, which it can run), and the
 instructions of Simulation::step() are told apart: what the run asks and sums for its guards alone
-(all but the solver's step and the sensors), and the engine's pass `measure`, which the guards share
+(all but the solver's step), and the engine's pass `measure`, which the guards share
 with the time step (largest speed) and with the domain (who left it).
 """
 
 import argparse
+import json
 import pathlib
 import re
 import subprocess
@@ -18,7 +19,6 @@ import tempfile
 PARTS = {
     "step": r"sluice::Simulation::step\(\)",
     "solver": r"sluice::Solver::step\(\)",
-    "sensors": r"sluice::Simulation::sample\(\)",
     "measure": r"::measure\(sluice::ParticleSpan const&, sluice::Method const&, ",
 }
 ALLOWED = 0.01  # of a step's instructions, for what is the guards' alone
@@ -28,8 +28,13 @@ def instructions(sluice, scene, steps):
     """Instructions of each part, with what it calls."""
     with tempfile.TemporaryDirectory(prefix="sluice-guards-") as name:
         out = pathlib.Path(name) / "callgrind.out"
+        content = json.loads(pathlib.Path(scene).read_text())
+        for key in ("sensors", "reference"):
+            content.pop(key, None)
+        bare = pathlib.Path(name) / "scene.json"
+        bare.write_text(json.dumps(content))
         subprocess.run(
-            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", sluice, "run", scene,
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", sluice, "run", bare,
              "--folder", f"{name}/job", "--threads", "1", "--simd", "AVX2", "--progress", "none",
              "--no-checkpoint", "--stop-after-step", str(steps)],
             check=False, capture_output=True)
@@ -56,7 +61,7 @@ def main():
         whole = count["step"]
         if not whole or not count["measure"]:
             sys.exit(f"callgrind did not see the steps of {scene}")
-        alone = (whole - count["solver"] - count["sensors"]) / whole
+        alone = (whole - count["solver"]) / whole
         shared = count["measure"] / whole
         failed |= alone > ALLOWED
         print(f"{pathlib.Path(scene).name}: {whole / arguments.steps / 1e6:.2f} million instructions "
