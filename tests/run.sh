@@ -112,7 +112,7 @@ step_asan() {
 }
 
 step_tsan() {
-  if build tsan test_sph test_service; then
+  if build tsan test_sph test_scene test_service; then
     check tsan -R '^service\.[A-Z]|[Tt]hread'
   else
     fail "tsan: build"

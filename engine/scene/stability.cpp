@@ -6,15 +6,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "engine/scene/scheme_analysis.hpp"
 #include "engine/scene/work.hpp"
-#include "engine/sph/von_neumann.hpp"
 
 namespace sluice {
 namespace {
 
 /// Log10 of the growth of the fastest wave over a run. The run's steps are at least as many as
 /// steps at rest would be; the fluid may move from the start, which shortens them.
-double decades(const Scene& scene, const LatticeStability& analysis) {
+double decades(const Scene& scene, const SchemeAnalysis& analysis) {
   const Method& m = scene.method;
   double speed = 0.0;
   for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.velocity.norm());
@@ -49,21 +49,21 @@ std::string_view to_string(Outlook outlook) {
 }
 
 Outlook stability_outlook(const Scene& scene) {
-  return outlook_of(decades(scene, LatticeStability(scene.method, Surface::free)));
+  return outlook_of(decades(scene, *analyse_scheme(scene.method)));
 }
 
 StabilityPrediction predict_stability(const Scene& scene) {
   const Method& m = scene.method;
-  const LatticeStability analysis(m, Surface::free);
-  const CourantLimits limits = courant_limits(m, Surface::free);
+  const auto analysis = analyse_scheme(m);
+  const CourantLimits limits = analysis->limits();
   StabilityPrediction p;
   p.courant = m.courant;
   p.courant_limit = limits.scheme;
   p.flow_limit = kDisorderShare * limits.scheme;
   p.margin = limits.scheme / m.courant - 1.0;
-  const double growth = analysis.spectral_radius(m.courant) - 1.0;
+  const double growth = analysis->spectral_radius(m.courant) - 1.0;
   p.growth_per_step = growth > LatticeStability::kTolerance ? growth : 0.0;
-  p.growth_decades = decades(scene, analysis);
+  p.growth_decades = decades(scene, *analysis);
   p.outlook = outlook_of(p.growth_decades);
   p.sound_limit = limits.sound;
   p.viscosity_limit = limits.viscosity;

@@ -38,10 +38,11 @@ struct StabilityPrediction {
   double force_limit = 0.0;  ///< c/h times 0.25 sqrt(h/|f|): fluid that falls makes no longer steps
 };
 
-/// The outlook alone, in about a millisecond.
+/// The outlook alone, in about a millisecond; nothing to speak of for a scheme that was looked at
+/// before (scheme_analysis.hpp).
 [[nodiscard]] Outlook stability_outlook(const Scene& scene);
 
-/// All of it: limits are searched for, which takes some ten milliseconds.
+/// All of it: limits are searched for, which takes some ten milliseconds for a new scheme.
 [[nodiscard]] StabilityPrediction predict_stability(const Scene& scene);
 
 /// "Courant number 1 of at most 2.12 for particles at rest: stable, margin 112 %; at most 1.31
