@@ -6,6 +6,7 @@
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/plan.hpp"
 #include "engine/store/digest.hpp"
+#include "engine/store/new_folder.hpp"
 #include "engine/store/sha256.hpp"
 #include "service/admission.hpp"
 #include "service/api_routes.hpp"
@@ -93,8 +94,8 @@ class NewFolder {
   NewFolder(const JobPaths& paths, std::string_view scene, const JobFile& file)
       : root_(paths.root()) {
     try {
-      const JobFolder folder = JobFolder::create(root_, scene);
-      write_job_file(root_, file);
+      publish_job_folder(root_, scene,
+                         {{job_file_path(root_).filename().string(), job_file_text(file)}});
     } catch (...) {
       remove();
       throw;

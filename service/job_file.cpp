@@ -72,10 +72,13 @@ JobFile from_json(const json& object) {
 
 fs::path job_file_path(const fs::path& folder) { return folder / "job.json"; }
 
-void write_job_file(const fs::path& folder, const JobFile& file) {
+std::string job_file_text(const JobFile& file) {
   // Text of users that is no UTF-8 must not keep a job from being written down.
-  publish_text(job_file_path(folder),
-               to_json(file).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  return to_json(file).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+void write_job_file(const fs::path& folder, const JobFile& file) {
+  publish_text(job_file_path(folder), job_file_text(file));
 }
 
 JobFile read_job_file(const fs::path& folder) {

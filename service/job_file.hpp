@@ -25,6 +25,8 @@ struct JobFile {
 
 /// `job.json` in a job's folder.
 [[nodiscard]] std::filesystem::path job_file_path(const std::filesystem::path& folder);
+/// What stands in it.
+[[nodiscard]] std::string job_file_text(const JobFile& file);
 /// Whole or not at all, and it survives a power cut. Throws StorageError: disk_full, unwritable,
 /// io.
 void write_job_file(const std::filesystem::path& folder, const JobFile& file);

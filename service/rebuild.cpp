@@ -14,6 +14,7 @@
 #include "engine/scene/parse.hpp"
 #include "engine/store/digest.hpp"
 #include "engine/store/job_folder.hpp"
+#include "engine/store/new_folder.hpp"
 #include "service/admission.hpp"
 #include "service/data_lock.hpp"
 #include "service/job_file.hpp"
@@ -158,6 +159,7 @@ std::vector<fs::path> job_folders(const fs::path& data, const RebuildReport& rep
   std::vector<fs::path> folders;
   for (const fs::directory_entry& entry : fs::directory_iterator(data / "jobs")) {
     const fs::path& path = entry.path();
+    if (path.filename().string().starts_with('.')) continue;  // being deleted
     if (entry.is_symlink() || !entry.is_directory() || !is_job_id(path.filename().string())) {
       report(path, "no job folder: its name is not one of ours, or it is a link or a file");
       continue;
@@ -190,6 +192,7 @@ bool adopt_folder(JobStore& store, const fs::path& folder, const RebuildReport& 
 std::size_t rebuild_from_folders(JobStore& store, const fs::path& data,
                                  const RebuildReport& report) {
   const RebuildReport tell = report ? report : [](const fs::path&, const std::string&) {};
+  remove_unfinished_folders(data / "jobs");
   std::size_t count = 0;
   for (const fs::path& folder : job_folders(data, tell)) {
     try {

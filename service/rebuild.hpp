@@ -21,6 +21,9 @@ using RebuildReport = std::function<void(const std::filesystem::path& folder, co
 /// readable job.json it becomes paused, so that nothing runs that nobody asked for. What only rows
 /// know is lost: history, attempts, the last progress.
 ///
+/// Folders that a submission had not finished (new_folder.hpp) are removed: nobody was told of
+/// those jobs. For use before the service takes requests.
+///
 /// Damaged folders, those of other names and a second one with the same Idempotency-Key are
 /// reported and passed over. Throws JobStoreError as the store does, StorageError where the folder
 /// itself cannot be listed.

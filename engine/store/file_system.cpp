@@ -15,6 +15,12 @@
 #include "engine/store/errors.hpp"
 
 namespace sluice {
+namespace {
+
+/// The system may stop a larger write; Linux takes at most 2 GiB at once.
+constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
+
+}  // namespace
 
 std::uint64_t FileSystem::free_bytes(const std::filesystem::path& folder) {
   struct statvfs status {};
@@ -70,6 +76,18 @@ FileDescriptor::~FileDescriptor() {
 }
 
 int FileDescriptor::release() { return std::exchange(descriptor_, -1); }
+
+void write_whole(FileSystem& system, int descriptor, ByteSpan bytes,
+                 const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t count =
+        system.write(descriptor, bytes.data(), std::min(bytes.size(), kLargestWrite));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw system_error("cannot write", path, errno);
+    if (count == 0) throw system_error("cannot write", path, ENOSPC);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+}
 
 InputFile::InputFile(const std::filesystem::path& path)
     // Without O_NONBLOCK the opening of a pipe waits for its writer.

@@ -52,6 +52,11 @@ class FileDescriptor {
 using Bytes = std::vector<std::byte>;
 using ByteSpan = std::span<const std::byte>;
 
+/// Writes all bytes, in as many calls as it takes. Throws StorageError with `path`, the name that
+/// people know the file by.
+void write_whole(FileSystem& system, int descriptor, ByteSpan bytes,
+                 const std::filesystem::path& path);
+
 /// A regular file opened for reading. Pipes, devices and folders are refused without waiting on
 /// them.
 class InputFile {

@@ -19,8 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTemporarySuffix = ".tmp";
-/// The system may stop a larger write; Linux takes at most 2 GiB at once.
-constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
 
 fs::path folder_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -83,22 +81,7 @@ class Temporary {
 
   [[nodiscard]] const fs::path& path() const { return path_; }
 
-  void write(ByteSpan bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count =
-          system_.write(descriptor_, bytes.data(), std::min(bytes.size(), kLargestWrite));
-      if (count < 0 && errno == EINTR) {
-        continue;
-      }
-      if (count < 0) {
-        throw system_error("cannot write", target_, errno);
-      }
-      if (count == 0) {
-        throw system_error("cannot write", target_, ENOSPC);
-      }
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
-  }
+  void write(ByteSpan bytes) { write_whole(system_, descriptor_, bytes, target_); }
 
   void sync() {
     if (system_.sync(descriptor_) != 0) {

@@ -13,6 +13,7 @@
 #include "engine/store/digest.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/job_folder.hpp"
+#include "engine/store/new_folder.hpp"
 #include "service/job_file.hpp"
 #include "tests/service/store_support.hpp"
 
@@ -40,8 +41,7 @@ void write_outcome(const fs::path& folder, int exit_code, double end_time,
 /// The folder of a job as a submission leaves it.
 fs::path make_folder(const DataFolder& data, const std::string& id, const JobFile& file = {},
                      double end_time = 1.0) {
-  (void)JobFolder::create(data.job(id), scene_text(end_time));
-  write_job_file(data.job(id), file);
+  publish_job_folder(data.job(id), scene_text(end_time), {{"job.json", job_file_text(file)}});
   return data.job(id);
 }
 
@@ -203,6 +203,18 @@ TEST_F(Rebuild, LeavesRowsThatAreThereAlone) {
   write_outcome(data_.job(running.id), 0, 1.0);
   EXPECT_EQ(rebuild(), 0U);
   EXPECT_TRUE(same(store_.find(running.id).value(), running));
+}
+
+TEST_F(Rebuild, ClearsAwayWhatASubmissionHadNotFinished) {
+  const std::string id = store_.new_id();
+  const fs::path hidden = data_.path() / "jobs" / ("." + id + ".new");
+  make_folder(data_, id);
+  fs::rename(data_.job(id), hidden);
+  fs::remove(hidden / "job.json");
+  EXPECT_EQ(rebuild(), 0U);
+  EXPECT_FALSE(fs::exists(hidden));
+  EXPECT_FALSE(store_.find(id));
+  EXPECT_TRUE(reports_.empty());
 }
 
 TEST_F(Rebuild, TakesOfTwoFoldersWithOneKeyTheOneThatRan) {

@@ -15,6 +15,7 @@
 
 #include "engine/store/trailer.hpp"
 #include "tests/store/expect_fault.hpp"
+#include "tests/store/faulty_file_system.hpp"
 #include "tests/store/fixtures.hpp"
 
 namespace sluice::test {
@@ -30,52 +31,6 @@ Bytes pattern(std::size_t count, int seed) {
   }
   return bytes;
 }
-
-enum class Step { create, write, sync, close, rename, sync_folder };
-
-/// Lets one call fail, or does something before it.
-class FaultyFileSystem : public FileSystem {
- public:
-  explicit FaultyFileSystem(Step step, std::function<int()> fault)
-      : step_(step), fault_(std::move(fault)) {}
-
-  int create_exclusive(const fs::path& path) override {
-    return fails(Step::create) ? -1 : FileSystem::create_exclusive(path);
-  }
-  ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
-    // Some bytes are written before the write that fails.
-    if (++writes_ > 1 && fails(Step::write)) {
-      return -1;
-    }
-    return FileSystem::write(descriptor, bytes, std::min<std::size_t>(count, 1000));
-  }
-  int sync(int descriptor) override {
-    return fails(Step::sync) ? -1 : FileSystem::sync(descriptor);
-  }
-  int close(int descriptor) override {
-    const int result = FileSystem::close(descriptor);
-    return fails(Step::close) ? -1 : result;
-  }
-  int rename(const fs::path& from, const fs::path& to) override {
-    return fails(Step::rename) ? -1 : FileSystem::rename(from, to);
-  }
-  int sync_folder(const fs::path& folder) override {
-    return fails(Step::sync_folder) ? -1 : FileSystem::sync_folder(folder);
-  }
-
- private:
-  bool fails(Step step) {
-    if (step != step_) {
-      return false;
-    }
-    errno = fault_();
-    return errno != 0;
-  }
-
-  Step step_;
-  std::function<int()> fault_;
-  int writes_ = 0;
-};
 
 TEST(Publish, KeepsEveryByteAndAddsNothingButTheTrailer) {
   const TemporaryFolder folder;
@@ -143,17 +98,6 @@ TEST(Publish, TriesAnotherNameWhenALeftoverHasTheTemporarysName) {
   EXPECT_EQ(read_verified(folder / "file"), pattern(10, 3));
 }
 
-/// A disk that takes every byte and stores another.
-class LyingFileSystem : public FileSystem {
- public:
-  ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
-    const auto* first = static_cast<const std::byte*>(bytes);
-    Bytes altered(first, first + count);
-    altered.back() ^= std::byte{1};
-    return FileSystem::write(descriptor, altered.data(), count);
-  }
-};
-
 TEST(Publish, DoesNotPutInPlaceWhatReadsBackWrong) {
   const TemporaryFolder folder;
   const Bytes old = pattern(5000, 1);
@@ -185,24 +129,6 @@ TEST(Publish, DoesNotBeginWhereTheDiskHasNoRoom) {
   });
   EXPECT_NE(message.find("148 bytes where 100 are free"), std::string::npos) << message;
 }
-
-/// Which of the calls that make a file survive a power cut were made.
-class NotingFileSystem : public FileSystem {
- public:
-  int sync(int descriptor) override {
-    calls += "file ";
-    return FileSystem::sync(descriptor);
-  }
-  int rename(const fs::path& from, const fs::path& to) override {
-    calls += "rename ";
-    return FileSystem::rename(from, to);
-  }
-  int sync_folder(const fs::path& folder) override {
-    calls += "folder ";
-    return FileSystem::sync_folder(folder);
-  }
-  std::string calls;
-};
 
 TEST(Publish, SyncsTheFileBeforeAndTheFolderAfterTheRenameWhenItMustSurviveAPowerCut) {
   const TemporaryFolder folder;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <initializer_list>
+#include <string_view>
+
+#include "engine/store/file_system.hpp"
+
+namespace sluice {
+
+/// A text file that a new folder begins with.
+struct FirstFile {
+  std::string_view name;
+  std::string_view text;
+};
+
+/// Makes the folder of a new job at `target`, whole or not at all: scene.json, `more`, and an empty
+/// folder for frames. It is built under a hidden name beside its place and moved there by one
+/// rename; whatever fails, and whenever the process is killed or the power is cut, there is no
+/// folder of that name or a complete one. On the disk, name and all, when this returns. The parent
+/// must be there. Throws StorageError: already_exists, disk_full, unwritable, io; nothing is left
+/// then, but when only the last sync fails the folder is in place, and the caller removes it.
+void publish_job_folder(const std::filesystem::path& target, std::string_view scene_text,
+                        std::initializer_list<FirstFile> more,
+                        FileSystem& system = FileSystem::real());
+
+/// Removes what killed callers of publish_job_folder left in `parent`, and returns how many. Nobody
+/// may be making folders in it meanwhile.
+std::size_t remove_unfinished_folders(const std::filesystem::path& parent);
+
+}  // namespace sluice
