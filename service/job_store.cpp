@@ -93,6 +93,7 @@ Job JobStore::apply(const std::string& id, JobAction action, const std::string& 
   }
   impl_->commit_with_event(
       transaction, {0, id, after.updated_ms, std::string(transition.event), change.event_detail});
+  if (after.state != JobState::running) impl_->progress().forget(id);
   impl_->note_in_folder(before, after);
   return after;
 }
@@ -100,20 +101,21 @@ Job JobStore::apply(const std::string& id, JobAction action, const std::string& 
 void JobStore::record_progress(const std::string& id, const std::string& token,
                                const std::string& progress) {
   const Impl::Lock lock = impl_->hold();
-  SqliteTransaction transaction(impl_->db());
-  SqliteStatement(impl_->db(),
-                  "UPDATE jobs SET progress = ?1, updated_ms = ?2 "
-                  "WHERE id = ?3 AND state = 'running' AND token = ?4",
-                  progress, unix_time_ms(), id, token)
-      .run();
-  if (impl_->db().changes() != 1) {
-    (void)impl_->require_job(id);
+  const Job job = impl_->require_job(id);
+  if (job.state != JobState::running || job.token != token) {
     throw JobStoreError(Fault::conflict,
                         fmt::format("job {}: progress of an attempt that is no longer its running "
                                     "one",
                                     id));
   }
+  const std::int64_t now = unix_time_ms();
+  if (!impl_->progress().note(id, progress, now)) return;
+  SqliteTransaction transaction(impl_->db());
+  SqliteStatement(impl_->db(), "UPDATE jobs SET progress = ?1, updated_ms = ?2 WHERE id = ?3",
+                  progress, now, id)
+      .run();
   transaction.commit();
+  impl_->progress().note_written(id, now);
 }
 
 void JobStore::record_event(const std::string& id, const std::string& name,

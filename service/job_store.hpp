@@ -54,7 +54,7 @@ struct JobFilter {
 };
 
 /// Job rows, events and idempotency keys in one SQLite file, DATA/jobs.sqlite. One connection,
-/// journal_mode=TRUNCATE, synchronous=EXTRA, STRICT tables, user_version migrations. What a call
+/// journal_mode=PERSIST, synchronous=EXTRA, STRICT tables, user_version migrations. What a call
 /// acknowledged survives a power cut. All calls may come from any thread; each write is one BEGIN
 /// IMMEDIATE transaction with its event row.
 class JobStore {
@@ -100,8 +100,8 @@ class JobStore {
   /// An end time may only become later, and only by a resume that puts the job into the queue.
   Job apply(const std::string& id, JobAction action, const std::string& token,
             const JobChange& change);
-  /// The last progress line of an attempt (no event row, at most one write a second is worth its
-  /// cost) and an event.
+  /// The last progress line of an attempt; no event. Seen at once, but on the disk only every ten
+  /// seconds and with the job's next transition (live_progress.hpp).
   void record_progress(const std::string& id, const std::string& token,
                        const std::string& progress);
   void record_event(const std::string& id, const std::string& name, const std::string& detail);

@@ -40,6 +40,7 @@ std::string JobStore::Impl::new_id() { return ids_.next(unix_time_ms()); }
 Job JobStore::Impl::require_job(const std::string& id) {
   std::optional<Job> job = select_job(db_, id);
   if (!job) throw JobStoreError(Fault::not_found, fmt::format("there is no job {}", id));
+  progress_.show_in(*job);
   return *std::move(job);
 }
 

@@ -11,6 +11,7 @@
 #include "service/job_ids.hpp"
 #include "service/job_rows.hpp"
 #include "service/job_store.hpp"
+#include "service/live_progress.hpp"
 #include "service/sqlite_db.hpp"
 
 namespace sluice {
@@ -29,8 +30,9 @@ class JobStore::Impl {
   // All that follows but wait_for_event and wake is called with the lock held.
   [[nodiscard]] Lock hold() { return Lock(mutex_); }
   [[nodiscard]] SqliteDb& db() { return db_; }
+  [[nodiscard]] LiveProgress& progress() { return progress_; }
   [[nodiscard]] std::string new_id();
-  /// Throws not_found.
+  /// With its newest progress. Throws not_found.
   [[nodiscard]] Job require_job(const std::string& id);
   /// The job that `key` made, if it made one. Throws key_reused.
   [[nodiscard]] std::optional<Job> job_of_key(const std::string& key, const std::string& body_hash);
@@ -49,6 +51,7 @@ class JobStore::Impl {
   DataLock lock_;
   SqliteDb db_;
   JobIds ids_;
+  LiveProgress progress_;
   std::mutex mutex_;  ///< guards all but data_ and lock_
   std::condition_variable changed_;
   bool stopping_ = false;

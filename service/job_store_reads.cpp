@@ -12,12 +12,16 @@ std::optional<Job> JobStore::find_by_key(const std::string& key,
 
 std::optional<Job> JobStore::find(const std::string& id) const {
   const Impl::Lock lock = impl_->hold();
-  return select_job(impl_->db(), id);
+  std::optional<Job> job = select_job(impl_->db(), id);
+  if (job) impl_->progress().show_in(*job);
+  return job;
 }
 
 std::vector<Job> JobStore::list(const JobFilter& filter) const {
   const Impl::Lock lock = impl_->hold();
-  return select_jobs(impl_->db(), filter);
+  std::vector<Job> jobs = select_jobs(impl_->db(), filter);
+  for (Job& job : jobs) impl_->progress().show_in(job);
+  return jobs;
 }
 
 std::vector<std::pair<JobState, std::size_t>> JobStore::count_by_state() const {

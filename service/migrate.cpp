@@ -62,8 +62,12 @@ std::int64_t newest_database_version() {
 void prepare_database(SqliteDb& db, LastStop last_stop) {
   const std::int64_t version = db.number("PRAGMA user_version");
   require_ours(db, version);
-  // In simulated power cuts WAL lost every commit and FULL the last; this pair lost none.
-  db.execute("PRAGMA journal_mode = TRUNCATE; PRAGMA synchronous = EXTRA");
+  // In simulated power cuts WAL lost every commit and DELETE with FULL the last. PERSIST ends a
+  // commit by overwriting the journal's head, synced, where TRUNCATE changes the file's size and so
+  // waits for the file system's own journal: a commit takes a third of the time.
+  db.execute(
+      "PRAGMA journal_mode = PERSIST; PRAGMA journal_size_limit = 1048576; "
+      "PRAGMA synchronous = EXTRA");
   if (last_stop == LastStop::unclean) require_whole(db);
   migrate(db, version);
 }

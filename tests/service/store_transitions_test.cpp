@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "service/live_progress.hpp"
 #include "tests/service/store_support.hpp"
 
 namespace sluice::test {
@@ -175,6 +176,46 @@ TEST(JobStore, RefusesEveryActionOfAStaleAttempt) {
   EXPECT_TRUE(same(store.find(first.id).value(), second));
   store.record_progress(first.id, second.token, R"({"step":7})");
   EXPECT_EQ(store.find(first.id)->progress, R"({"step":7})");
+}
+
+TEST(Progress, IsSeenAtOnceAndKeptOverTheEndOfItsAttemptAndARestart) {
+  const DataFolder data;
+  std::string id;
+  {
+    JobStore store(data.path());
+    const Job running = add_job_in(store, JobState::running);
+    id = running.id;
+    store.record_progress(id, running.token, R"({"step":1})");
+    store.record_progress(id, running.token, R"({"step":2})");
+    EXPECT_EQ(store.find(id)->progress, R"({"step":2})");
+    EXPECT_EQ(store.list({}).front().progress, R"({"step":2})");
+    EXPECT_EQ(store.apply(id, JobAction::requeue, running.token, {}).progress, R"({"step":2})");
+  }
+  EXPECT_EQ(JobStore(data.path()).find(id)->progress, R"({"step":2})");
+}
+
+TEST(Progress, GoesToTheDiskEveryTenSecondsAlsoWhenTheClockIsSetBack) {
+  LiveProgress live;
+  EXPECT_FALSE(live.note("a", "1", 1'000'000));
+  EXPECT_FALSE(live.note("a", "2", 1'009'999));
+  EXPECT_TRUE(live.note("a", "3", 1'010'000));
+  live.note_written("a", 1'010'000);
+  EXPECT_FALSE(live.note("a", "4", 1'011'000));
+  EXPECT_TRUE(live.note("a", "5", 1000));
+}
+
+TEST(Progress, OfAnAttemptThatEndedIsNotShownForTheNext) {
+  LiveProgress live;
+  (void)live.note("a", "1", 5);
+  Job job;
+  job.id = "a";
+  live.show_in(job);
+  EXPECT_EQ(job.progress, "1");
+  EXPECT_EQ(job.updated_ms, 5);
+  live.forget("a");
+  job.progress = "of the row";
+  live.show_in(job);
+  EXPECT_EQ(job.progress, "of the row");
 }
 
 JobChange with_reason(const std::string& reason) {
