@@ -1,11 +1,9 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <malloc.h>
 
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "cli/notify.hpp"
@@ -15,22 +13,10 @@
 #include "engine/store/errors.hpp"
 #include "service/api.hpp"
 #include "service/rebuild.hpp"
+#include "service/service_log.hpp"
 
 namespace sluice {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// One JSON line on stderr. What came from outside is escaped: a line stays a line.
-void log_line(Json fields) {
-  using namespace std::chrono;
-  const auto now = time_point_cast<milliseconds>(system_clock::now());
-  const auto whole = floor<seconds>(now);
-  Json line{{"at", fmt::format("{:%FT%T}.{:03}Z", whole, (now - whole).count())}};
-  line.update(fields);
-  const std::string text = line.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
-  std::fputs(text.c_str(), stderr);
-}
 
 void log_request(const AccessRecord& record, AccessLog wanted) {
   if (wanted == AccessLog::none) return;
@@ -103,11 +89,13 @@ void serve(ServeOptions& options) {
   // First, so that no thread or child starts before the actions are set.
   const StopSignals signals;
   if (!options.token_file.empty()) options.http.guard.token = read_token_file(options.token_file);
-  if (options.rows == Rows::rebuild) set_rows_aside(options.data);
-  JobStore store(options.data);
-  adopt_folders(store, options.data);
-  Scheduler scheduler(store, options.data, options.limits);
-  Api api(store, scheduler, options.data);
+  // Messages name files by their whole paths; the interface takes the folder's off (api.cpp).
+  const std::filesystem::path data = std::filesystem::absolute(options.data);
+  if (options.rows == Rows::rebuild) set_rows_aside(data);
+  JobStore store(data);
+  adopt_folders(store, data);
+  Scheduler scheduler(store, data, options.limits);
+  Api api(store, scheduler, data);
   HttpServer server(
       options.http, [&api](const Request& request) { return api.handle(request); },
       observer(api, options.log));

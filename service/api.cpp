@@ -11,6 +11,7 @@
 #include "engine/store/errors.hpp"
 #include "service/api_routes.hpp"
 #include "service/job_ids.hpp"
+#include "service/service_log.hpp"
 
 namespace sluice {
 namespace {
@@ -138,6 +139,31 @@ ProblemType problem_of(StorageFault fault) {
   return ProblemType::internal;
 }
 
+/// Without the place of the data folder, which is nobody's business but the administrator's.
+std::string without_place(std::string text, const std::filesystem::path& data) {
+  const std::string place = data.string();
+  for (auto at = text.find(place); at != text.npos; at = text.find(place, at)) {
+    const bool inside = text.compare(at + place.size(), 1, "/") == 0;
+    text.replace(at, place.size() + (inside ? 1 : 0), inside ? "" : "the data folder");
+  }
+  return text;
+}
+
+/// What went wrong on the service's side: all of it for the log, and without our paths for the
+/// client.
+Response service_failure(const ApiContext& context, const Request& request, ProblemType type,
+                         std::string_view message) {
+  if (type == ProblemType::internal || type == ProblemType::disk_full) {
+    log_line({{"event", "request_failed"},
+              {"method", request.method},
+              {"path", request.path},
+              {"message", message}});
+  }
+  Response response = problem_response(type, without_place(std::string(message), context.data));
+  if (response.status == 503) response.headers.emplace_back("Retry-After", "5");
+  return response;
+}
+
 Response handle_or_fail(ApiContext& context, const Request& request) {
   try {
     return route(context, request);
@@ -146,13 +172,13 @@ Response handle_or_fail(ApiContext& context, const Request& request) {
     if (response.status == 503) response.headers.emplace_back("Retry-After", "5");
     return response;
   } catch (const JobStoreError& error) {
-    return problem_response(problem_of(error.fault()), error.what());
+    return service_failure(context, request, problem_of(error.fault()), error.what());
   } catch (const StorageError& error) {
-    return problem_response(problem_of(error.fault()), error.what());
+    return service_failure(context, request, problem_of(error.fault()), error.what());
   } catch (const std::bad_alloc&) {
     return problem_response(ProblemType::overloaded, "the service is out of memory");
   } catch (const std::exception& error) {
-    return problem_response(ProblemType::internal, error.what());
+    return service_failure(context, request, ProblemType::internal, error.what());
   }
 }
 
@@ -171,7 +197,7 @@ Job find_job(const ApiContext& context, const std::string& id) {
 }
 
 Api::Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data)
-    : context_(std::make_unique<ApiContext>(store, scheduler, std::move(data))) {}
+    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data))) {}
 
 Api::~Api() = default;
 

@@ -1,10 +1,9 @@
 #include "service/conclusions.hpp"
+#include "service/service_log.hpp"
 
 #include <fmt/format.h>
 
 #include <utility>
-
-#include "service/scheduler_log.hpp"
 
 namespace sluice {
 namespace {

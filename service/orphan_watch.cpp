@@ -8,7 +8,7 @@
 
 #include "engine/store/job_folder.hpp"
 #include "service/orphan.hpp"
-#include "service/scheduler_log.hpp"
+#include "service/service_log.hpp"
 
 namespace sluice {
 namespace {

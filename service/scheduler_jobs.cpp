@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "service/retention.hpp"
-#include "service/scheduler_log.hpp"
 #include "service/scheduler_loop.hpp"
+#include "service/service_log.hpp"
 #include "service/worker_command.hpp"
 
 // What the rounds of the scheduler's loop consist of; the rounds are in scheduler_loop.cpp.

@@ -10,7 +10,7 @@
 #include "service/admission.hpp"
 #include "service/attempt_limits.hpp"
 #include "service/retention.hpp"
-#include "service/scheduler_log.hpp"
+#include "service/service_log.hpp"
 
 namespace sluice {
 namespace {

@@ -125,7 +125,9 @@ TEST(ApiSubmit, RefusesMoreJobsThanMayWait) {
   limits.queued_jobs = 1;
   Service service(limits);
   (void)service.submit();
-  expect_problem(service.post("/v1/jobs", tiny_scene(0.1)), 503, "queue-full");
+  const Response response = service.post("/v1/jobs", tiny_scene(0.1));
+  expect_problem(response, 503, "queue-full");
+  EXPECT_EQ(header_of(response, "Retry-After"), "5");
   EXPECT_EQ(count_folders(service), 1U);
 }
 
@@ -180,6 +182,23 @@ TEST(ApiSubmit, RefusesKeysThatAreNoKeys) {
     expect_problem(service.ask("POST", "/v1/jobs", tiny_scene(0.1), {{"idempotency-key", key}}),
                    400, "invalid-parameter");
   }
+}
+
+TEST(ApiSubmit, SaysWhatTheDiskRefusedWithoutThePlaceOfItsFolder) {
+  Service service;
+  fs::remove_all(service.data.path() / "jobs");
+  write_file(service.data.path() / "jobs", "in the way");
+  const Response response = service.post("/v1/jobs", tiny_scene(0.1));
+  expect_problem(response, 500, "internal");
+  const std::string detail = body_of(response)["detail"];
+  EXPECT_EQ(detail.find(service.data.path()), std::string::npos) << detail;
+  EXPECT_EQ(detail.find("jobs/"), 0U) << detail;
+  EXPECT_NE(detail.find("Not a directory"), std::string::npos) << detail;
+  EXPECT_TRUE(service.store.list({}).empty());
+
+  fs::remove(service.data.path() / "jobs");
+  fs::create_directory(service.data.path() / "jobs");
+  EXPECT_EQ(service.post("/v1/jobs", tiny_scene(0.1)).status, 202);
 }
 
 TEST(ApiSubmitThreads, OneKeyAtTheSameInstantMakesOneJob) {
