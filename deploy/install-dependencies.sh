@@ -24,7 +24,9 @@ build_packages=(
   sqlite3               # backup.sh
 )
 # The libraries that the build packages bring, by the names of Debian 12.
-runtime_packages=(libhdf5-103-1 libfmt9 libxxhash0 libhwy1 libsqlite3-0 libcpp-httplib0.11)
+runtime_packages=(
+  libhdf5-103-1 libfmt9 libxxhash0 libhwy1 libsqlite3-0 libpng16-16 libcpp-httplib0.11
+)
 test_packages=(
   libgtest-dev libgmock-dev
   librapidcheck-dev     # property tests
