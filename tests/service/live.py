@@ -50,20 +50,29 @@ class Server:
             self.log.seek(0)
             raise RuntimeError(f"no address in {first!r}: {self.log.read()}")
         self.port = int(found.group(1))
+        self.told_to_stop = False
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-            try:
-                self.process.wait(120)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
+        self.tell_to_stop()
+        try:
+            self.process.wait(120)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        # The workers of a service that was killed write their checkpoints before they go.
+        self.wait_until("the workers to go", lambda: not self.is_worked_in())
         self.process.stdout.close()
         self.log.close()
         self.scratch.cleanup()
+
+    def tell_to_stop(self):
+        """Once: a second signal ends the service before its workers."""
+        if self.process.poll() is None and not self.told_to_stop:
+            self.told_to_stop = True
+            self.process.send_signal(signal.SIGTERM)
 
     def ask(self, method, target, body=None, headers=None, timeout=60):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
@@ -108,6 +117,16 @@ class Server:
             except FileNotFoundError:
                 pass
         return children
+
+    def is_worked_in(self):
+        """Whether a worker, of this service or one before it, is still there."""
+        for process in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                if os.readlink(f"/proc/{process}/cwd").startswith(os.path.realpath(self.data)):
+                    return True
+            except OSError:
+                pass  # gone, or not ours to look at
+        return False
 
     def is_sanitized(self):
         """Whether the program was built with a sanitizer, which takes memory and time of its own."""

@@ -244,7 +244,7 @@ def walk_stop(walk, server, running):
     try:
         walk.ask(server, "POST", f"/v1/jobs/{running}/pause")
         walk.ask(server, "POST", f"/v1/jobs/{running}/cancel")
-        server.process.send_signal(signal.SIGTERM)
+        server.tell_to_stop()
         server.wait_until("the service to drain",
                           lambda: server.ask("GET", "/readyz").status == 503)
         for path, method, _ in list(walk.operations()):

@@ -52,7 +52,7 @@ class Serve(unittest.TestCase):
             with server:
                 self.assertEqual(manager.recv(100), b"READY=1")
                 self.assertEqual(server.ask("GET", "/readyz").status, 200)
-                server.process.send_signal(signal.SIGTERM)
+                server.tell_to_stop()
                 self.assertEqual(manager.recv(100), b"STOPPING=1")
                 self.assertEqual(server.process.wait(300), 0)
 
@@ -68,7 +68,7 @@ class Serve(unittest.TestCase):
             # Long enough to be running still however fast the machine is.
             job = server.submit(scene(1e4, spacing=0.01, interval=1.0))
             before = server.wait_until("progress", lambda: steps(server, job, 0))
-            server.process.send_signal(signal.SIGTERM)
+            server.tell_to_stop()
             self.assertEqual(server.process.wait(300), 0)
         with Server(PROGRAM, *options, data=data) as server:
             server.wait_until("more progress", lambda: steps(server, job, before))
@@ -126,7 +126,7 @@ class Serve(unittest.TestCase):
         with Server(PROGRAM, "--access-log", "all") as server:
             server.ask("GET", "/%0a%7b%22event%22:%22forged%22%7d%1b[2J%ff")
             self.assertEqual(server.ask("GET", "/livez").status, 200)
-            server.process.send_signal(signal.SIGTERM)
+            server.tell_to_stop()
             server.process.wait(300)
             server.log.seek(0)
             text = server.log.read()
