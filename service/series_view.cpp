@@ -1,5 +1,6 @@
 #include "service/series_view.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -109,7 +110,7 @@ void keep_extremes(const Series& series, Span span, std::size_t column,
 
 void append_number(fmt::memory_buffer& out, double value, std::string_view missing) {
   if (std::isfinite(value)) {
-    fmt::format_to(std::back_inserter(out), "{}", value);
+    fmt::format_to(std::back_inserter(out), FMT_COMPILE("{}"), value);
   } else {
     out.append(missing);
   }
