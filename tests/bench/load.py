@@ -1,4 +1,4 @@
-"""How the service answers on loopback while two jobs run: see load.sh."""
+"""How the service answers on loopback, idle and while two jobs run: see load.sh."""
 
 import http.client
 import json
@@ -8,6 +8,7 @@ import re
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "service"))
@@ -78,29 +79,44 @@ def wrk(server, what, target, aim, seconds):
     line(what, rate, percentile(50), percentile(99), aim)
 
 
+def make_series(data):
+    """The id of a completed job with SAMPLES samples."""
+    with Server(sys.argv[1], data=data) as server:
+        sensor = {"name": "P1", "kind": "pressure", "position": [0.6, 0.02], "interval": INTERVAL}
+        job = server.submit(still_water(0.03, (SAMPLES - 1) * INTERVAL, sensors=[sensor]))
+        server.wait_for(job, "completed")
+        samples = server.ask("GET", f"/v1/jobs/{job}/sensors/P1").json()["samples"]
+        assert abs(samples - SAMPLES) <= 1, samples
+        return job
+
+
+def measure(server, job, series, seconds):
+    target = f"/v1/jobs/{series}/sensors/P1?filter=gaussian&tau=0.002"
+    submit_many(server, JOBS)
+    wrk(server, "status of a job", f"/v1/jobs/{job}", 5, seconds)
+    wrk(server, f"list of {JOBS} jobs", f"/v1/jobs?limit={JOBS}", None, seconds)
+    wrk(server, "list of 50 jobs", "/v1/jobs?limit=50", None, seconds)
+    wrk(server, f"filtered series, {SAMPLES} samples", target, 30, seconds)
+    wrk(server, "the same, 500 points", target + "&max_points=500", 30, seconds)
+
+
 def main():
     program = sys.argv[1]
     seconds = int(sys.argv[2])
     print(machine())
-    print(f"{CONNECTIONS} connections, {seconds} s each, two jobs running on one thread each")
-    with Server(program, "--cores", "2") as server:
-        sensor = {"name": "P1", "kind": "pressure", "position": [0.6, 0.02], "interval": INTERVAL}
-        series = server.submit(still_water(0.03, (SAMPLES - 1) * INTERVAL, sensors=[sensor]))
-        server.wait_for(series, "completed")
-        target = f"/v1/jobs/{series}/sensors/P1?filter=gaussian&tau=0.002"
-        samples = server.ask("GET", target).json()["samples"]
-        assert abs(samples - SAMPLES) <= 1, samples
-        running = [server.submit(still_water()) for _ in range(2)]
-        for job in running:
-            server.wait_for(job, "running")
-        submit_many(server, JOBS)
-        wrk(server, "status of a job", f"/v1/jobs/{running[0]}", 5, seconds)
-        wrk(server, f"list of {JOBS} jobs", f"/v1/jobs?limit={JOBS}", None, seconds)
-        wrk(server, "list of 50 jobs", "/v1/jobs?limit=50", None, seconds)
-        wrk(server, f"filtered series, {samples} samples", target, 30, seconds)
-        wrk(server, "the same, 500 points", target + "&max_points=500", 30, seconds)
-        states = [server.ask("GET", f"/v1/jobs/{job}").json()["state"] for job in running]
-        assert states == ["running", "running"], states
+    with tempfile.TemporaryDirectory(prefix="sluice-load-") as data:
+        series = make_series(data)
+        print(f"\n{CONNECTIONS} connections, {seconds} s each, no job runs")
+        with Server(program, "--disk-reserve", "1000TB", data=data) as server:  # starts nothing
+            measure(server, series, series, seconds)
+        print(f"\n{CONNECTIONS} connections, {seconds} s each, two jobs running on one thread each")
+        with Server(program, "--cores", "2", data=data) as server:
+            running = [server.submit(still_water(), "?priority=1") for _ in range(2)]
+            for job in running:
+                server.wait_for(job, "running")
+            measure(server, running[0], series, seconds)
+            states = [server.ask("GET", f"/v1/jobs/{job}").json()["state"] for job in running]
+            assert states == ["running", "running"], states
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Requests per second and times of the service on loopback while two jobs run: submissions, status,
-# lists and filtered series, held against their aims. For a machine that does
-# nothing else.
+# Requests per second and times of the service on loopback, idle and while two jobs run:
+# submissions, status, lists and filtered series, held against their aims. For a machine that does
+# nothing else, with a disk that nobody else writes to (TMPDIR says where the data go).
 #
 #   tests/bench/load.sh [SECONDS [SLUICE]]    10 s each; SLUICE by default of the release build
 set -euo pipefail
