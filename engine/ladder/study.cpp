@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -17,8 +18,13 @@ template <class Archive>
 void describe(Archive& a, StudyCase& one) {
   a.text("name", one.name,
          {.about = "name of the case", .min = 1, .max = 32, .need = Need::required});
+  a.any("scene", one.scene,
+        {.about = "a base of its own: a scene, or the name of a scene's file, from the study's "
+                  "folder",
+         .otherwise = "the study's"},
+        {"object", "string"});
   a.any("set", one.set,
-        {.about = "what it changes in the base scene: JSON pointers and their new values, such as "
+        {.about = "what it changes in its base scene: JSON pointers and their new values, such as "
                   "\"/numerics/courant\": 1; null leaves a key out"},
         {"object"});
 }
@@ -112,14 +118,15 @@ void apply(json& scene, const std::string& key, const json& value) {
 /// Makes the runs of a study whose own keys are in order.
 class Planner {
  public:
-  Planner(StudyPlan& plan, Problems& problems, json base)
-      : plan_(plan), problems_(problems), base_(std::move(base)) {}
+  /// `bases`: the scene of each case.
+  Planner(StudyPlan& plan, Problems& problems, std::vector<json> bases)
+      : plan_(plan), problems_(problems), bases_(std::move(bases)) {}
 
   void make_all() {
     std::vector<StudyCase> cases = plan_.study.cases;
-    if (cases.empty()) cases.push_back({plan_.study.name, json::object()});
-    for (std::size_t k = 0; k < cases.size() && !full_; ++k) {
-      json scene = base_;
+    if (cases.empty()) cases.push_back({plan_.study.name, nullptr, json::object()});
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      json scene = bases_[k];
       StudyRun run;
       run.of_case = cases[k].name;
       run.setup = cases[k].name;
@@ -143,7 +150,7 @@ class Planner {
   void walk(const json& scene, const StudyRun& run, std::size_t axis) {
     if (axis == plan_.study.vary.size()) return repeat(scene, run);
     const StudyAxis& varied = plan_.study.vary[axis];
-    for (std::size_t k = 0; k < varied.values.size() && !full_; ++k) {
+    for (std::size_t k = 0; k < varied.values.size(); ++k) {
       const json& value = varied.values[k];
       json changed = scene;
       change(changed, varied.key, value, at(at(at("/vary", axis), "values"), k));
@@ -156,7 +163,7 @@ class Planner {
 
   void repeat(const json& scene, const StudyRun& run) {
     if (!plan_.study.repeats) return finish(scene, run, "");
-    for (int k = 1; k <= plan_.study.repeats->count && !full_; ++k) {
+    for (int k = 1; k <= plan_.study.repeats->count; ++k) {
       json displaced = scene;
       displaced["jitter"] = {{"amplitude", plan_.study.repeats->jitter}, {"seed", k}};
       finish(displaced, run, fmt::format("-r{}", k));
@@ -164,11 +171,6 @@ class Planner {
   }
 
   void finish(json scene, StudyRun run, const std::string& suffix) {
-    if (plan_.runs.size() == kMaxStudyRuns) {
-      problems_.add("", fmt::format("makes more than {} runs; study less at once", kMaxStudyRuns));
-      full_ = true;
-      return;
-    }
     run.setup = plain_name(run.setup);
     run.name = plain_name(run.setup + suffix);
     if (!names_.insert(run.name).second) {
@@ -189,56 +191,83 @@ class Planner {
 
   StudyPlan& plan_;
   Problems& problems_;
-  json base_;
+  std::vector<json> bases_;
   std::set<std::string> names_;
-  bool full_ = false;
 };
 
-void check_values(const Study& study, Problems& problems) {
+void check_values(const Study& study, std::size_t most, Problems& problems) {
   for (std::size_t k = 0; k < study.vary.size(); ++k) {
     if (study.vary[k].values.empty()) {
       problems.add(at(at("/vary", k), "values"), "is empty; must hold at least one value");
     }
   }
+  // Before any run is made: a short text can ask for more than any machine holds.
+  double runs = static_cast<double>(std::max<std::size_t>(study.cases.size(), 1));
+  for (const StudyAxis& axis : study.vary) runs *= static_cast<double>(axis.values.size());
+  if (study.repeats) runs *= study.repeats->count;
+  if (runs > static_cast<double>(most)) {
+    problems.add("",
+                 fmt::format("makes {:.6g} runs, more than {}; study less at once", runs, most));
+  }
 }
 
-/// The base scene as JSON, from the study or from its file.
-std::optional<json> base_scene(const Study& study, SceneLoader load, const void* context,
-                               Problems& problems) {
-  if (study.scene.is_object()) return study.scene;
-  const std::string name = study.scene.get<std::string>();
-  if (load == nullptr) {
-    problems.add("/scene", "names a file; must be the scene itself here");
+/// Where the files come from that a study names.
+struct SceneFiles {
+  SceneLoader load;
+  const void* context;
+};
+
+/// A base scene as JSON, which stands in the study at `pointer` or names a file there.
+std::optional<json> base_scene(const json& given, const std::string& pointer,
+                               const SceneFiles& files, Problems& problems) {
+  if (given.is_object()) return given;
+  const std::string name = given.get<std::string>();
+  if (files.load == nullptr) {
+    problems.add(pointer, "names a file; must be the scene itself here");
     return std::nullopt;
   }
   try {
     Problems inner;
-    auto scene = read_json(load(name, context), inner);
+    auto scene = read_json(files.load(name, files.context), inner);
     for (const Problem& problem : inner.take()) {
-      problems.add("/scene", fmt::format("{}: {}: {}", name, problem.pointer, problem.message));
+      problems.add(pointer, fmt::format("{}: {}: {}", name, problem.pointer, problem.message));
     }
     if (scene && scene->is_object()) return scene;
-    problems.add("/scene", fmt::format("{} holds no scene", name));
+    problems.add(pointer, fmt::format("{} holds no scene", name));
   } catch (const std::runtime_error& error) {
-    problems.add("/scene", error.what());
+    problems.add(pointer, error.what());
   }
   return std::nullopt;
 }
 
+/// The base of each case, or of the study where it has none; incomplete when there are problems.
+std::vector<json> base_scenes(const Study& study, const SceneFiles& files, Problems& problems) {
+  std::vector<json> bases;
+  const auto common = base_scene(study.scene, "/scene", files, problems);
+  if (study.cases.empty() && common) bases.push_back(*common);
+  for (std::size_t k = 0; k < study.cases.size(); ++k) {
+    const json& own = study.cases[k].scene;
+    const auto base =
+        own.is_null() ? common : base_scene(own, at(at("/cases", k), "scene"), files, problems);
+    if (base) bases.push_back(*base);
+  }
+  return bases;
+}
+
 }  // namespace
 
-StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context) {
+StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context,
+                     std::size_t most) {
   StudyPlan plan;
   Problems problems;
   if (const auto document = read_json(text, problems)) {
     Reader reader(*document, "", problems);
     describe(reader, plan.study);
     reader.finish();
-    check_values(plan.study, problems);
+    check_values(plan.study, most, problems);
     if (problems.empty()) {
-      if (auto base = base_scene(plan.study, load, context, problems)) {
-        Planner(plan, problems, *std::move(base)).make_all();
-      }
+      std::vector<json> bases = base_scenes(plan.study, {load, context}, problems);
+      if (problems.empty()) Planner(plan, problems, std::move(bases)).make_all();
     }
   }
   plan.problems = problems.take();

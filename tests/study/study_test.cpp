@@ -60,6 +60,22 @@ TEST(Study, RunsEveryCaseWithEveryPointOfTheGrid) {
   EXPECT_EQ(last.scene.method.kernel, KernelKind::truncated_gaussian);
 }
 
+TEST(Study, ACaseMayHaveABaseOfItsOwn) {
+  json study = small_study();
+  json other = puddle();
+  other["numerics"]["courant"] = 0.125;
+  study["cases"] = {{{"name", "a"}},
+                    {{"name", "b"}, {"scene", other}, {"set", {{"/end_time", 0.2}}}}};
+  const StudyPlan plan = plan_of(study);
+  ASSERT_EQ(plan.runs.size(), 2u);
+  EXPECT_NE(plan.runs[0].scene.method.courant, 0.125);
+  EXPECT_DOUBLE_EQ(plan.runs[0].scene.end_time, 0.1);
+  EXPECT_DOUBLE_EQ(plan.runs[1].scene.method.courant, 0.125);
+  EXPECT_DOUBLE_EQ(plan.runs[1].scene.end_time, 0.2);
+  study["cases"][1]["scene"] = "other.json";
+  expect_refused(study, "/cases/1/scene", "must be the scene itself");
+}
+
 TEST(Study, LeavesAKeyOutForNull) {
   json study = small_study();
   study["cases"] = {{{"name", "bare"}, {"set", {{"/numerics/artificial_viscosity", nullptr}}}}};
@@ -124,9 +140,14 @@ TEST(Study, RefusesAGridWithoutEndBeforeMakingIt) {
   for (const char* key : {"/numerics/courant", "/end_time", "/resolution/smoothing_ratio"}) {
     study["vary"].push_back({{"key", key}, {"values", values}});
   }
-  const StudyPlan plan = plan_of(study);
-  EXPECT_TRUE(plan.runs.empty());
-  EXPECT_FALSE(plan.problems.empty());
+  expect_refused(study, "", "makes 216000 runs, more than 1000");
+}
+
+TEST(Study, RefusesMoreRunsThanItsReaderAllows) {
+  json study = small_study();
+  study["repeats"] = {{"count", 3}};
+  EXPECT_EQ(plan_study(study.dump(), nullptr, nullptr, 3).runs.size(), 3u);
+  EXPECT_TRUE(plan_study(study.dump(), nullptr, nullptr, 2).runs.empty());
 }
 
 TEST(Study, SurvivesAnyText) {
