@@ -16,7 +16,7 @@
 namespace sluice {
 namespace {
 
-enum class ReportFormat { text, json, markdown, html };
+enum class ReportFormat { text, json, markdown, html, svg };
 
 struct ReportArguments {
   std::string target;  ///< a job's folder, or its id at a service
@@ -38,6 +38,11 @@ std::string formatted(const std::filesystem::path& folder, double tau, ReportFor
       return report_markdown(report);
     case ReportFormat::html:
       return report_html(report, job.series, picture_frames(folder, job.scene));
+    case ReportFormat::svg:
+      if (std::string sheet = report_svg(report); !sheet.empty()) return sheet;
+      throw CommandEnd(ExitCode::usage,
+                       "nothing to draw: no experiment matches this scene, and it names no "
+                       "reference; --format html has the plots of all sensors");
     case ReportFormat::text:
       break;
   }
@@ -89,11 +94,14 @@ void add_report(CLI::App& app) {
   const std::map<std::string, ReportFormat> formats{{"text", ReportFormat::text},
                                                     {"json", ReportFormat::json},
                                                     {"markdown", ReportFormat::markdown},
-                                                    {"html", ReportFormat::html}};
+                                                    {"html", ReportFormat::html},
+                                                    {"svg", ReportFormat::svg}};
   CLI::Option* format =
       verb->add_option("--format", arguments->format,
-                       "text, json, markdown, or html: one page with plots and pictures")
-          ->transform(CLI::CheckedTransformer(formats).description("{text,json,markdown,html}"));
+                       "text, json, markdown, html: one page with plots and pictures, or svg: the "
+                       "plots over the reference")
+          ->transform(
+              CLI::CheckedTransformer(formats).description("{text,json,markdown,html,svg}"));
   verb->add_flag("--json", arguments->json, "The same as --format json")->excludes(format);
   verb->add_option("--tau", arguments->tau, "Time filter of pressures, s")->capture_default_str();
   verb->add_option(

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "engine/ladder/markup.hpp"
 
@@ -290,35 +291,67 @@ std::string content_svg(const Frame2d& frame) {
   return text;
 }
 
-}  // namespace
+/// What stands inside the element of a chart, and its height.
+struct ChartBody {
+  std::string svg;
+  double height = 0.0;
+};
 
-std::string_view chart_style() { return kStyle; }
-
-std::string chart_svg(const Chart& chart, SvgPlace place) {
+ChartBody body_of(const Chart& chart) {
   const Legend legend = lay_out(legend_of(chart));
   const Frame2d frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0};
-  const double height =
-      frame.bottom() + kBottom + kLegendRow * static_cast<double>(chart.notes.size());
+  std::string text = fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
+                                 escaped(chart.title));
+  text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);
+  text += axes_svg(frame) + notes_svg(frame);
+  text += fmt::format(
+      "<clipPath id=\"clip-{}\"><rect {}/></clipPath>\n<g clip-path=\"url(#clip-{})\">\n{}</g>\n",
+      chart.id, frame_rectangle(frame), chart.id, content_svg(frame));
+  text += fmt::format("<rect class=\"frame\" {}/>\n", frame_rectangle(frame));
+  return {std::move(text),
+          frame.bottom() + kBottom + kLegendRow * static_cast<double>(chart.notes.size())};
+}
+
+std::string opening(double width, double height, SvgPlace place, std::string_view title) {
   std::string text = fmt::format(
       "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" "
       "role=\"img\"{}>\n<title>{}</title>\n",
-      kWidth, height,
-      place == SvgPlace::file ? fmt::format(" width=\"{}\" height=\"{:.0f}\"", kWidth, height) : "",
-      escaped(chart.title));
+      width, height,
+      place == SvgPlace::file ? fmt::format(" width=\"{}\" height=\"{:.0f}\"", width, height) : "",
+      escaped(std::string(title)));
   if (place == SvgPlace::file) {
     text += fmt::format(
         "<style>{}</style>\n<rect width=\"100%\" height=\"100%\" "
         "style=\"fill: var(--halo)\"/>\n",
         kStyle);
   }
-  text += fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
-                      escaped(chart.title));
-  text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);
-  text += axes_svg(frame) + notes_svg(frame);
-  text += fmt::format(
-      "<clipPath id=\"clip-{}\"><rect {}/></clipPath>\n<g clip-path=\"url(#clip-{})\">\n{}</g>\n",
-      chart.id, frame_rectangle(frame), chart.id, content_svg(frame));
-  return text + fmt::format("<rect class=\"frame\" {}/>\n</svg>\n", frame_rectangle(frame));
+  return text;
+}
+
+}  // namespace
+
+std::string_view chart_style() { return kStyle; }
+
+std::string chart_svg(const Chart& chart, SvgPlace place) {
+  const ChartBody body = body_of(chart);
+  return opening(kWidth, body.height, place, chart.title) + body.svg + "</svg>\n";
+}
+
+std::string sheet_svg(const std::vector<Chart>& charts, std::size_t columns,
+                      std::string_view title) {
+  std::string text;
+  double top = 0.0;
+  double height = 0.0;
+  for (std::size_t k = 0; k < charts.size(); ++k) {
+    const std::size_t column = k % columns;
+    if (column == 0) top += std::exchange(height, 0.0);
+    const ChartBody body = body_of(charts[k]);
+    text += fmt::format("<g transform=\"translate({} {:.0f})\">\n{}</g>\n",
+                        kWidth * static_cast<double>(column), top, body.svg);
+    height = std::max(height, body.height);
+  }
+  const double width = kWidth * static_cast<double>(std::min(columns, charts.size()));
+  return opening(width, top + height, SvgPlace::file, title) + text + "</svg>\n";
 }
 
 }  // namespace sluice

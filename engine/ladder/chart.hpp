@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,6 +62,10 @@ enum class SvgPlace { page, file };
 /// One chart. The legend stands above the plot, so it covers nothing; a line of more points than
 /// pixels is thinned to its extremes per pixel column.
 [[nodiscard]] std::string chart_svg(const Chart& chart, SvgPlace place);
+
+/// Several charts as one file, row by row with `columns` (at least 1) in each.
+[[nodiscard]] std::string sheet_svg(const std::vector<Chart>& charts, std::size_t columns,
+                                    std::string_view title);
 
 /// The CSS of charts and pictures, for a light and a dark page.
 [[nodiscard]] std::string_view chart_style();

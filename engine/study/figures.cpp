@@ -204,6 +204,29 @@ void add_experiment_charts(std::vector<Chart>& charts, std::set<std::string>& dr
 
 }  // namespace
 
+std::vector<Chart> compared_charts(const Report& report) {
+  std::vector<Chart> charts;
+  if (report.evidence && !report.evidence->pressures.empty()) {
+    for (const PressureEvidence& pressure : report.evidence->pressures) {
+      charts.push_back(pressure_chart(pressure, *report.evidence, charts.size()));
+    }
+  } else if (report.evidence) {
+    std::set<std::string> drawn;
+    add_experiment_charts(charts, drawn, report);
+  }
+  if (report.series_evidence) {
+    for (const CurveEvidence& one : report.series_evidence->curves) {
+      charts.push_back(curve_chart(one, *report.series_evidence, charts.size()));
+    }
+  }
+  return charts;
+}
+
+std::string report_svg(const Report& report) {
+  const std::vector<Chart> charts = compared_charts(report);
+  return charts.empty() ? std::string{} : sheet_svg(charts, 2, report.scene.name);
+}
+
 std::vector<Chart> report_charts(const Report& report, const std::vector<Series>& series) {
   std::vector<Chart> charts;
   std::set<std::string> drawn;

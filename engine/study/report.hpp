@@ -78,6 +78,10 @@ struct JobRecord {
 [[nodiscard]] std::string report_html(const Report& report, const std::vector<Series>& series,
                                       const std::vector<Frame>& frames);
 
+/// The pressures over the experiment's, or whatever else is compared, two plots in a row; empty
+/// where nothing is compared.
+[[nodiscard]] std::string report_svg(const Report& report);
+
 /// The frames of a job nearest to the times of the paper's pictures (T = 2.0, 5.9, 7.8) or, without
 /// scales, to a quarter, three quarters and the end. A frame that cannot be read is left out.
 [[nodiscard]] std::vector<Frame> picture_frames(const std::filesystem::path& folder,

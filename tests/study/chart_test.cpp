@@ -127,5 +127,24 @@ TEST(Chart, AsAFileBringsItsStyle) {
   EXPECT_EQ(chart_svg(chart, SvgPlace::page).find("<style>"), std::string::npos);
 }
 
+TEST(Chart, OnASheetStandsTwoInARowAndOnTheNextRowBelow) {
+  Chart first = one_line({0.0, 10.0}, {0.0, 1.0});
+  Chart second = first;
+  second.id = "two";
+  Chart third = first;
+  third.id = "three";
+  const std::string sheet = sheet_svg({first, second, third}, 2, "a & b");
+  EXPECT_EQ(sheet.find("<svg"), 0u);
+  EXPECT_EQ(sheet.find("<svg", 1), std::string::npos);
+  EXPECT_NE(sheet.find("<title>a &amp; b</title>"), std::string::npos);
+  std::size_t frames = 0;
+  for (std::size_t at = 0; (at = sheet.find("class=\"frame\"", at)) != std::string::npos; ++at) {
+    ++frames;
+  }
+  EXPECT_EQ(frames, 3u);
+  EXPECT_NE(sheet.find("translate(560 0)"), std::string::npos);
+  EXPECT_EQ(sheet.find("translate(1120"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sluice
