@@ -13,6 +13,7 @@
 #include "cli/verbs.hpp"
 #include "engine/scene/problems.hpp"
 #include "engine/store/publish.hpp"
+#include "engine/study/elliptical_drop.hpp"
 #include "engine/study/stability_case.hpp"
 #include "engine/study/stability_map.hpp"
 #include "engine/study/stability_report.hpp"
@@ -32,6 +33,7 @@ struct StabilityArguments {
   fs::path svg;
   bool quick = false;
   bool map = false;
+  bool order = false;
   bool list = false;
 };
 
@@ -118,6 +120,15 @@ void run_map(const StabilityArguments& arguments) {
              map.cells(), map.disagreements());
 }
 
+void run_order(const StabilityArguments& arguments) {
+  const SuiteFolder folder(arguments.folder);
+  StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full,
+                       chosen_scheme(arguments.scheme));
+  const std::vector<DropPoint> points = run_drops(bench);
+  write_if_asked(arguments.json, drop_json(points).dump(2) + "\n");
+  fmt::print("{}", table_text(drop_table(points)));
+}
+
 void stability(const StabilityArguments& arguments) {
   if (arguments.list) {
     for (const StabilityCase& each : all_cases()) {
@@ -126,6 +137,7 @@ void stability(const StabilityArguments& arguments) {
     return;
   }
   if (arguments.map) return run_map(arguments);
+  if (arguments.order) return run_order(arguments);
   run_suite(arguments);
 }
 
@@ -143,6 +155,9 @@ void add_stability(CLI::App& app) {
   verb->add_flag("--list", arguments->list, "Name the cases and their gates");
   CLI::Option* map = verb->add_flag("--map", arguments->map,
                                     "Predicted and measured limits of the Courant number instead");
+  verb->add_flag("--order", arguments->order,
+                 "Order of convergence on the elliptical drop, over four spacings, instead")
+      ->excludes(map);
   verb->add_option("--json", arguments->json, "Also write JSON into this file");
   verb->add_option("--html", arguments->html, "Also write a report with pictures into this file")
       ->excludes(map);

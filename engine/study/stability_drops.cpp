@@ -6,6 +6,7 @@
 
 #include "engine/scene/initial.hpp"
 #include "engine/sph/solver.hpp"
+#include "engine/study/elliptical_drop.hpp"
 #include "engine/study/stability_case.hpp"
 #include "engine/study/stability_scenes.hpp"
 
@@ -18,20 +19,6 @@ double mean_square(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
   return sum / static_cast<double>(values.size());
-}
-
-/// Semi-axis along y over the radius at A t: a drop of v = A (-x, y) keeps its area and, since
-/// nothing acts on it, its kinetic energy: with b = R s, a = R/s, A^2 2 = s'^2 (1 + s^-4)
-/// (Monaghan 1994).
-double drop_stretch(double a_t) {
-  constexpr int kSteps = 1000;
-  const auto rate = [](double s) { return std::sqrt(2.0 / (1.0 + std::pow(s, -4))); };
-  double s = 1.0;
-  for (int n = 0; n < kSteps; ++n) {
-    const double half = s + 0.5 * a_t / kSteps * rate(s);
-    s += a_t / kSteps * rate(half);
-  }
-  return s;
 }
 
 CaseResult elliptical_drop(StabilityBench& bench) {

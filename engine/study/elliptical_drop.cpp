@@ -1,0 +1,124 @@
+#include "engine/study/elliptical_drop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/study/stability_scenes.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr double kEnd = 0.8;     // A t, with A = 1/s and R = 1 m
+constexpr double kSound = 15.0;  // m/s
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+DropPoint run_drop(StabilityBench& bench, int per_radius) {
+  double at_start = 1.0;
+  const CaseRun run = bench.run(in_space(fmt::format("drop-{}", per_radius),
+                                         circle(Vec::Zero(), 1.0), 1.0 / per_radius, kSound, kEnd),
+                                StabilityCheck::refuse, [&](Particles& particles) {
+                                  for (std::size_t i = 0; i < particles.size(); ++i) {
+                                    particles.vx[i] = -particles.x[i];
+                                    particles.vy[i] = particles.y[i];
+                                  }
+                                  at_start = root_mean_square(particles.y);
+                                });
+  if (!run.completed() || !run.last) {
+    throw std::runtime_error(fmt::format("the drop with R/dx = {} did not end well", per_radius));
+  }
+  const Particles& end = run.last->solver.particles;
+  return {1.0 / per_radius, root_mean_square(end.y) / at_start, drop_stretch(run.last->solver.time),
+          static_cast<double>(end.size())};
+}
+
+}  // namespace
+
+double drop_stretch(double a_t) {
+  constexpr int kSteps = 1000;
+  const auto rate = [](double s) { return std::sqrt(2.0 / (1.0 + std::pow(s, -4))); };
+  double s = 1.0;
+  for (int n = 0; n < kSteps; ++n) {
+    const double half = s + 0.5 * a_t / kSteps * rate(s);
+    s += a_t / kSteps * rate(half);
+  }
+  return s;
+}
+
+std::vector<DropPoint> run_drops(StabilityBench& bench) {
+  const std::vector<int> ladder =
+      bench.pick(std::vector<int>{10, 15, 20, 30}, std::vector<int>{10, 20, 40, 80});
+  std::vector<DropPoint> points;
+  for (const int per_radius : ladder) points.push_back(run_drop(bench, per_radius));
+  return points;
+}
+
+DropOrder order_of(const std::vector<DropPoint>& points) {
+  DropOrder result;
+  std::vector<Refined> ratios;
+  for (const DropPoint& point : points) {
+    const double ratio = point.stretch / point.exact;
+    ratios.push_back({point.spacing, ratio});
+    result.errors.push_back({point.spacing, std::abs(ratio - 1.0)});
+  }
+  const auto finer = [](const Refined& a, const Refined& b) { return a.spacing < b.spacing; };
+  std::sort(ratios.begin(), ratios.end(), finer);
+  std::sort(result.errors.begin(), result.errors.end(), finer);
+  result.order = order_of_errors(result.errors);
+  result.richardson = richardson(ratios);
+  return result;
+}
+
+Table drop_table(const std::vector<DropPoint>& points) {
+  const DropOrder order = order_of(points);
+  Table table;
+  table.title = "Elliptical drop: order of convergence";
+  table.note =
+      fmt::format("semi-axis at A t = {:g} over that of the exact solution; order of the error: {}",
+                  kEnd, cell(order.order, 2));
+  if (const auto& fit = order.richardson) {
+    table.note +=
+        fmt::format("; three finest: {}, order {}, limit {}, grid convergence index {} %",
+                    to_string(fit->approach), cell(fit->order, 2), cell(fit->extrapolated, 5),
+                    cell(fit->gci ? std::optional(100.0 * *fit->gci) : std::nullopt, 3));
+  }
+  table.head = {"R/dx", "particles", "semi-axis over exact", "error, %"};
+  for (const DropPoint& point : points) {
+    const double ratio = point.stretch / point.exact;
+    table.rows.push_back({brief(1.0 / point.spacing, 4), brief(point.particles, 12), cell(ratio, 5),
+                          cell(100.0 * std::abs(ratio - 1.0), 3)});
+  }
+  return table;
+}
+
+nlohmann::ordered_json drop_json(const std::vector<DropPoint>& points) {
+  using Json = nlohmann::ordered_json;
+  const auto value = [](const std::optional<double>& number) {
+    return number ? Json(*number) : Json(nullptr);
+  };
+  const DropOrder order = order_of(points);
+  const Richardson fit = order.richardson.value_or(Richardson{});
+  Json runs = Json::array();
+  for (const DropPoint& point : points) {
+    runs.push_back({{"spacing_over_radius", point.spacing},
+                    {"particles", point.particles},
+                    {"stretch", point.stretch},
+                    {"exact", point.exact}});
+  }
+  return Json{{"flow", "elliptical drop"},
+              {"end_time_s", kEnd},
+              {"order_of_error", value(order.order)},
+              {"richardson_order", value(fit.order)},
+              {"extrapolated", value(fit.extrapolated)},
+              {"grid_convergence_index", value(fit.gci)},
+              {"runs", std::move(runs)}};
+}
+
+}  // namespace sluice
