@@ -4,6 +4,7 @@
 #
 #   deploy/install-dependencies.sh            what a build and a run need
 #   deploy/install-dependencies.sh --tests    also what tests/run.sh needs
+#   deploy/install-dependencies.sh --browser  also Chromium, which a test of label long opens a report in
 #   deploy/install-dependencies.sh --runtime  only what a program that is built already needs
 #   deploy/install-dependencies.sh --list     prints the names instead (combines with the others)
 set -euo pipefail
@@ -35,13 +36,14 @@ test_packages=(
   python3 python3-jsonschema python3-h5py python3-numpy
 )
 
-usage() { sed -n '2,8s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '2,9s/^# \{0,1\}//p' "$0"; }
 
 packages=("${build_packages[@]}")
 action=install
 for argument in "$@"; do
   case "$argument" in
     --tests) packages+=("${test_packages[@]}") ;;
+    --browser) packages+=(chromium) ;;
     --runtime) packages=("${runtime_packages[@]}") ;;
     --list) action=list ;;
     -h | --help) usage; exit 0 ;;
