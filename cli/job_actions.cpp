@@ -9,7 +9,9 @@
 #include "cli/job_text.hpp"
 #include "cli/json_text.hpp"
 #include "cli/service_client.hpp"
+#include "cli/service_study.hpp"
 #include "cli/verbs.hpp"
+#include "service/job_ids.hpp"
 
 namespace sluice {
 namespace {
@@ -32,7 +34,13 @@ HttpRequest post(const std::string& id, std::string_view action) {
   return request;
 }
 
-HttpRequest cancel(const std::string& id, const ActionArguments&) { return post(id, "/cancel"); }
+HttpRequest cancel(const std::string& id, const ActionArguments&) {
+  if (!is_study_id(id)) return post(id, "/cancel");
+  HttpRequest request;
+  request.method = "POST";
+  request.target = study_target(id, "/cancel");
+  return request;
+}
 
 HttpRequest pause(const std::string& id, const ActionArguments&) { return post(id, "/pause"); }
 
@@ -51,7 +59,7 @@ HttpRequest resume(const std::string& id, const ActionArguments& arguments) {
 HttpRequest remove(const std::string& id, const ActionArguments&) {
   HttpRequest request;
   request.method = "DELETE";
-  request.target = job_target(id);
+  request.target = is_study_id(id) ? study_target(id) : job_target(id);
   return request;
 }
 
@@ -85,7 +93,9 @@ std::shared_ptr<ActionArguments> add_action(CLI::App& app, const char* name, con
                                             MakeRequest make_request) {
   auto arguments = std::make_shared<ActionArguments>();
   CLI::App* verb = app.add_subcommand(name, help);
-  verb->add_option("id", arguments->ids, "The job's id, or several")->required();
+  verb->add_option("id", arguments->ids,
+                   "The id of a job, or several; a study's too for cancel and delete")
+      ->required();
   verb->add_flag("--json", arguments->json, "Print the service's JSON, a line for each job");
   add_service_options(*verb, arguments->service);
   verb->footer(fmt::format("Example: sluice {} j0r2mt1q8kq0f7a3c1d2e", name));

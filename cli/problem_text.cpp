@@ -23,17 +23,20 @@ std::string slug_of(const Json& problem) {
 }
 
 /// One of a problem's `errors`: a place in the body, a parameter, or a limit.
-std::string error_line(const Json& error, const std::string& subject) {
+std::string error_line(const Json& error, const std::string& subject, std::string_view slug) {
   if (member(error, "pointer").is_string()) {
     const std::string pointer = text_at(error, "pointer");
+    const std::string_view whole =
+        slug == "invalid-study" ? "(the whole study)" : "(the whole scene)";
     return fmt::format("{}: {}: {}", subject.empty() ? "the request" : subject,
-                       pointer.empty() ? "(the whole scene)" : pointer, text_at(error, "detail"));
+                       pointer.empty() ? whole : pointer, text_at(error, "detail"));
   }
   const std::string parameter = text_at(error, "parameter");
   if (!parameter.empty()) return fmt::format("{} {}", parameter, text_at(error, "detail"));
-  return fmt::format("{}: {} = {}, allowed are at most {}",
-                     subject.empty() ? "the request" : subject, text_at(error, "limit"),
-                     count_at(error, "value"), count_at(error, "allowed"));
+  const std::string which = text_at(error, "detail");  // the run of a study
+  return fmt::format("{}: {}{}{} = {}, allowed are at most {}",
+                     subject.empty() ? "the request" : subject, which, which.empty() ? "" : ": ",
+                     text_at(error, "limit"), count_at(error, "value"), count_at(error, "allowed"));
 }
 
 bool names_a_parameter(const Json& problem) {
@@ -43,7 +46,8 @@ bool names_a_parameter(const Json& problem) {
 
 CommandEnd end_for(int status, const Json& problem, const std::string& message) {
   const std::string slug = slug_of(problem);
-  const bool scene = slug == "invalid-scene" || slug == "over-limit" || slug == "body-too-large";
+  const bool scene = slug == "invalid-scene" || slug == "invalid-study" || slug == "over-limit" ||
+                     slug == "body-too-large";
   if (scene && !names_a_parameter(problem)) return CommandEnd(ExitCode::invalid_scene, message);
   if (status == 401 || status == 403) return CommandEnd(ClientExit::refused, message);
   if (status == 404) return CommandEnd(ClientExit::not_found, message);
@@ -61,10 +65,11 @@ std::string message_of(const Json& problem, const ProblemContext& context) {
                ? fmt::format("{} does not take this token: see --token-file", context.server)
                : fmt::format("{} wants a token: name its file with --token-file", context.server);
   }
-  if (slug == "invalid-scene" && !context.subject.empty()) {
+  const bool invalid = slug == "invalid-scene" || slug == "invalid-study";
+  if (invalid && !context.subject.empty()) {
     const std::size_t count = member(problem, "errors").size();
-    return fmt::format("{} is no valid scene: {} problem{}", context.subject, count,
-                       count == 1 ? "" : "s");
+    return fmt::format("{} is no valid {}: {} problem{}", context.subject,
+                       slug == "invalid-scene" ? "scene" : "study", count, count == 1 ? "" : "s");
   }
   return fmt::format("{}: {}", text_at(problem, "title"), detail);
 }
@@ -82,7 +87,7 @@ void end_with_problem(const HttpReply& reply, const ProblemContext& context) {
   }
   const Json& errors = member(problem, "errors");
   for (const Json& error : errors.is_array() ? errors : Json::array()) {
-    std::fputs((error_line(error, context.subject) + "\n").c_str(), stderr);
+    std::fputs((error_line(error, context.subject, slug_of(problem)) + "\n").c_str(), stderr);
   }
   throw end_for(reply.status, problem, message_of(problem, context));
 }

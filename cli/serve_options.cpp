@@ -41,6 +41,10 @@ void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
       ->check(CLI::Range(0, 1024))
       ->group(group);
   add("--max-queued", limits.queued_jobs, "Jobs that may wait");
+  verb.add_option("--max-study-runs", limits.runs_per_study, "Runs of a study")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->group(group);
   add("--max-particles", limits.particles_per_job, "Particles of a job, walls included");
   add_bytes("--max-memory", limits.memory_per_job,
             "Memory of a job, such as 4GB; by default three quarters of the machine's");

@@ -9,12 +9,14 @@
 
 #include "cli/adopt_scene.hpp"
 #include "cli/run_pool.hpp"
+#include "cli/service_study.hpp"
 #include "cli/verbs.hpp"
 #include "engine/ladder/study_output.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/study/study_row.hpp"
+#include "service/job_ids.hpp"
 
 namespace sluice {
 namespace {
@@ -22,12 +24,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct StudyArguments {
-  fs::path file;
+  std::string study;  ///< a file; with --server also the id of a study
+  ServiceStudy service;
   fs::path folder;
   int cores = 0;
   std::vector<double> below;
   bool json = false;
   bool no_run = false;
+
+  [[nodiscard]] fs::path file() const { return study; }
 };
 
 std::string load_scene(const std::string& name, const void* context) {
@@ -36,6 +41,9 @@ std::string load_scene(const std::string& name, const void* context) {
 }
 
 StudyPlan read_study(const fs::path& file) {
+  if (!fs::is_regular_file(file)) {
+    throw CommandEnd(ExitCode::usage, fmt::format("there is no study file {}", file.string()));
+  }
   const fs::path beside = file.parent_path();
   StudyPlan plan = plan_study(read_text(file, kMaxSceneBytes + 1), &load_scene, &beside);
   if (plan.problems.empty()) return plan;
@@ -173,8 +181,45 @@ void end_unless_complete(const StudyResult& result, const fs::path& folder) {
                                result.rows.size(), (folder / "runs").string()));
 }
 
+/// The study as text with its base scene in it, because a service reads no files for others.
+std::string whole_document(const StudyArguments& arguments) {
+  using Json = nlohmann::ordered_json;
+  const fs::path file = arguments.file();
+  static_cast<void>(read_study(file));
+  Json document = Json::parse(read_text(file, kMaxSceneBytes + 1));
+  const auto take_in = [&](Json& scene) {
+    if (!scene.is_string()) return;
+    scene =
+        Json::parse(read_text(file.parent_path() / scene.get<std::string>(), kMaxSceneBytes + 1));
+  };
+  take_in(document["scene"]);
+  if (document.contains("cases")) {
+    for (Json& one : document["cases"]) {
+      if (one.contains("scene")) take_in(one["scene"]);
+    }
+  }
+  for (const double target : arguments.below) document["targets"].push_back(target);
+  return document.dump();
+}
+
+void study_by_service(const StudyArguments& arguments) {
+  if (arguments.no_run || !arguments.folder.empty() || arguments.cores > 0) {
+    throw CommandEnd(ExitCode::usage,
+                     "--folder, --cores and --no-run belong to a study on this machine: leave them "
+                     "out with --server");
+  }
+  ServiceStudy options = arguments.service;
+  options.json = arguments.json;
+  if (is_study_id(arguments.study)) return show_study(options, arguments.study);
+  submit_study(options, whole_document(arguments), arguments.study);
+}
+
 void study(const StudyArguments& arguments) {
-  StudyPlan plan = read_study(arguments.file);
+  if (arguments.service.of_service) return study_by_service(arguments);
+  if (arguments.service.watch || !arguments.service.key.empty()) {
+    throw CommandEnd(ExitCode::usage, "--watch and --idempotency-key go with --server");
+  }
+  StudyPlan plan = read_study(arguments.file());
   plan.study.targets.insert(plan.study.targets.end(), arguments.below.begin(),
                             arguments.below.end());
   const fs::path root = arguments.folder.empty() ? fs::path(plan.study.name) : arguments.folder;
@@ -183,7 +228,7 @@ void study(const StudyArguments& arguments) {
   const FolderLock lock(folder.lock());
   bool finished = true;
   if (!arguments.no_run) {
-    publish_text(root / "study.json", read_text(arguments.file, kMaxSceneBytes + 1));
+    publish_text(root / "study.json", read_text(arguments.file(), kMaxSceneBytes + 1));
     const int cores = arguments.cores > 0
                           ? arguments.cores
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -203,9 +248,10 @@ void add_study(CLI::App& app) {
   const auto arguments = std::make_shared<StudyArguments>();
   CLI::App* verb = app.add_subcommand(
       "study", "Run a scene with its keys varied, and compare error and cost of all runs");
-  verb->add_option("study", arguments->file, "The study (JSON; schemas/study.schema.json)")
-      ->required()
-      ->check(CLI::ExistingFile);
+  verb->add_option("study", arguments->study,
+                   "The study (JSON; schemas/study.schema.json); with --server also the id of one "
+                   "that was submitted")
+      ->required();
   verb->add_option("--folder", arguments->folder,
                    "Where its runs and results go, and where it goes on; by default the study's "
                    "name in this folder");
@@ -216,10 +262,13 @@ void add_study(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   verb->add_flag("--json", arguments->json, "Print JSON for programs");
   verb->add_flag("--no-run", arguments->no_run, "Only put together what is there");
+  add_service_study_options(*verb, arguments->service);
   verb->footer(
       "The folder then holds results.md, results.csv, results.json and error-cost.svg. Stop it "
       "with\nCtrl-C (exit 85); the same command goes on.\nExample: sluice study "
-      "schemas/examples/study-quick.json --folder first-study");
+      "schemas/examples/study-quick.json --folder first-study\n"
+      "         sluice study schemas/examples/study-quick.json --server http://127.0.0.1:8080 "
+      "--watch");
   verb->callback([arguments] { study(*arguments); });
 }
 

@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <random>
 
 #include "cli/job_text.hpp"
 #include "cli/json_text.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/service_client.hpp"
+#include "cli/service_study.hpp"
 #include "cli/verbs.hpp"
 #include "cli/watch.hpp"
 
@@ -31,14 +31,6 @@ struct SubmitArguments {
 };
 
 constexpr double kRetry = 30.0;  // s
-
-/// 128 random bits: no two submissions share it.
-std::string new_key() {
-  std::random_device source;
-  std::string key = "sluice-";
-  for (int n = 0; n < 4; ++n) key += fmt::format("{:08x}", source());
-  return key;
-}
 
 std::string query_of(const SubmitArguments& arguments) {
   std::string query;

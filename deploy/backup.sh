@@ -59,6 +59,11 @@ for folder in "$data"/jobs/*/; do
   jobs=$((jobs + 1))
 done
 
+if [[ -d $data/studies ]]; then
+  cp -a "$data/studies" "$part/"
+  find "$part/studies" -name '.*.tmp' -delete
+fi
+
 (cd "$part" && find . -type f ! -name SHA256SUMS -print0 | sort -z | xargs -0 sha256sum >SHA256SUMS)
 sync -f "$part"
 mv -T "$part" "$copy"

@@ -24,6 +24,7 @@ mkdir "$part" || die "cannot make $part; remove what a broken restore left, or c
 trap 'rm -rf "$part"' EXIT
 trap 'exit 130' INT TERM HUP
 cp -a "$copy/jobs.sqlite" "$copy/jobs" "$part/"
+if [[ -d $copy/studies ]]; then cp -a "$copy/studies" "$part/"; fi
 sync -f "$part"
 mv -T "$part" "$data"
 echo "restored into $data; start: sluice serve --data $data"

@@ -51,14 +51,7 @@ void check_overlap(const Scene& scene, const Estimate& estimate) {
 }
 
 void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
-  Json errors = Json::array();
-  const auto compare = [&](std::string_view name, std::uint64_t value, std::uint64_t limit) {
-    if (value > limit) errors.push_back({{"limit", name}, {"value", value}, {"allowed", limit}});
-  };
-  compare("particles", estimate.fluid_particles + estimate.wall_particles,
-          limits.particles_per_job);
-  compare("memory_bytes", estimate.memory_bytes, memory_limit(limits));
-  compare("disk_bytes", estimate.disk_bytes, limits.disk_per_job);
+  const Json errors = broken_limits(estimate, limits);
   if (errors.empty()) return;
   const Json& first = errors.front();
   throw ApiError(ProblemType::over_limit,
@@ -78,6 +71,18 @@ Admitted admit_scene(std::string_view text, const ServiceLimits& limits) {
   check_limits(admitted.estimate, limits);
   check_overlap(admitted.scene, admitted.estimate);
   return admitted;
+}
+
+Json broken_limits(const Estimate& estimate, const ServiceLimits& limits) {
+  Json errors = Json::array();
+  const auto compare = [&](std::string_view name, std::uint64_t value, std::uint64_t limit) {
+    if (value > limit) errors.push_back({{"limit", name}, {"value", value}, {"allowed", limit}});
+  };
+  compare("particles", estimate.fluid_particles + estimate.wall_particles,
+          limits.particles_per_job);
+  compare("memory_bytes", estimate.memory_bytes, memory_limit(limits));
+  compare("disk_bytes", estimate.disk_bytes, limits.disk_per_job);
+  return errors;
 }
 
 Json estimate_document(const Scene& scene, const Estimate& estimate, int threads) {

@@ -20,6 +20,10 @@ struct Admitted {
 /// problem as {pointer, detail}, over_limit with every limit that it breaks.
 [[nodiscard]] Admitted admit_scene(std::string_view text, const ServiceLimits& limits);
 
+/// Every limit that a scene breaks, as {limit, value, allowed}; an empty array when none.
+[[nodiscard]] nlohmann::ordered_json broken_limits(const Estimate& estimate,
+                                                   const ServiceLimits& limits);
+
 /// particles, steps, memory, disk, about how long it takes on `threads` threads, and how far the
 /// Courant number is from the largest stable one.
 [[nodiscard]] nlohmann::ordered_json estimate_document(const Scene& scene, const Estimate& estimate,

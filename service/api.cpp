@@ -12,6 +12,7 @@
 #include "service/api_routes.hpp"
 #include "service/job_ids.hpp"
 #include "service/service_log.hpp"
+#include "service/study_jobs.hpp"
 
 namespace sluice {
 namespace {
@@ -33,6 +34,11 @@ constexpr std::array kRoutes{
     Route{"GET", "/v1/jobs/{id}/log", &show_log},
     Route{"GET", "/v1/jobs/{id}/files", &list_files},
     Route{"GET", "/v1/jobs/{id}/files/{name}", &send_file},
+    Route{"POST", "/v1/studies", &submit_study},
+    Route{"GET", "/v1/studies", &list_studies},
+    Route{"GET", "/v1/studies/{id}", &show_study},
+    Route{"DELETE", "/v1/studies/{id}", &delete_study},
+    Route{"POST", "/v1/studies/{id}/cancel", &cancel_study},
     Route{"GET", "/v1/schemas", &list_schemas},
     Route{"GET", "/v1/schemas/{name}", &show_schema},
     Route{"GET", "/problems/{slug}", &show_problem},
@@ -196,8 +202,17 @@ Job find_job(const ApiContext& context, const std::string& id) {
                       : "a job's id is the letter j and 20 characters of 0-9 and a-v");
 }
 
+StudyRecord find_study(const ApiContext& context, const std::string& id) {
+  if (auto study = context.studies.find(id)) return *std::move(study);
+  throw ApiError(ProblemType::no_such_study,
+                 is_study_id(id) ? fmt::format("there is no study {}; it may have been deleted", id)
+                                 : "a study's id is the letter s and 20 characters of 0-9 and a-v");
+}
+
 Api::Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data)
-    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data))) {}
+    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data))) {
+  finish_studies(*context_);
+}
 
 Api::~Api() = default;
 

@@ -14,6 +14,7 @@
 #include "service/scheduler.hpp"
 #include "service/series_cache.hpp"
 #include "service/slots.hpp"
+#include "service/study_store.hpp"
 
 namespace sluice {
 
@@ -26,13 +27,18 @@ inline constexpr int kMaxViews = 4;
 /// What the routes share. Every member may be used from any thread.
 struct ApiContext {
   ApiContext(JobStore& jobs, Scheduler& workers, std::filesystem::path folder)
-      : store(jobs), scheduler(workers), data(std::move(folder)), metrics(jobs.last_event()) {}
+      : store(jobs),
+        scheduler(workers),
+        data(std::move(folder)),
+        studies(data),
+        metrics(jobs.last_event()) {}
 
   [[nodiscard]] JobPaths paths(const std::string& id) const { return JobPaths(data / "jobs" / id); }
 
   JobStore& store;
   Scheduler& scheduler;
   std::filesystem::path data;
+  StudyStore studies;
   Metrics metrics;
   SeriesCache series;
   Slots streams{kMaxStreams};
@@ -40,6 +46,7 @@ struct ApiContext {
   std::counting_semaphore<kMaxViews> views{kMaxViews};
   std::atomic<bool> draining = false;
   std::mutex extensions;     ///< one at a time, because each writes its job's scene before its row
+  std::mutex study_changes;  ///< one at a time: each touches many jobs
   std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice
 };
 
@@ -51,5 +58,7 @@ struct RouteRequest {
 
 /// The job that the request names. Throws ApiError(no_such_job).
 [[nodiscard]] Job find_job(const ApiContext& context, const std::string& id);
+/// The study that the request names. Throws ApiError(no_such_study).
+[[nodiscard]] StudyRecord find_study(const ApiContext& context, const std::string& id);
 
 }  // namespace sluice

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/ladder/study.hpp"
 #include "engine/scene/schema.hpp"
 #include "service/api_routes.hpp"
 #include "service/query.hpp"
@@ -28,6 +29,7 @@ Response show_index(ApiContext& /*context*/, const RouteRequest& request) {
                              {"version", kVersion},
                              {"links",
                               {{"jobs", "/v1/jobs"},
+                               {"studies", "/v1/studies"},
                                {"schemas", "/v1/schemas"},
                                {"openapi", "/openapi.json"},
                                {"metrics", "/metrics"}}}});
@@ -41,7 +43,8 @@ Response show_openapi(ApiContext& /*context*/, const RouteRequest& request) {
 Response list_schemas(ApiContext& /*context*/, const RouteRequest& request) {
   QueryReader(request.http).finish();
   const Json scene{{"name", "scene"}, {"href", "/v1/schemas/scene"}};
-  return json_response(200, {{"schemas", Json::array({scene})}});
+  const Json study{{"name", "study"}, {"href", "/v1/schemas/study"}};
+  return json_response(200, {{"schemas", Json::array({scene, study})}});
 }
 
 Response show_schema(ApiContext& /*context*/, const RouteRequest& request) {
@@ -49,7 +52,11 @@ Response show_schema(ApiContext& /*context*/, const RouteRequest& request) {
   if (request.parts[0] == "scene") {
     return text_response(scene_schema_text(), "application/schema+json");
   }
-  throw ApiError(ProblemType::not_found, "there is one schema: /v1/schemas/scene");
+  if (request.parts[0] == "study") {
+    return text_response(study_schema_text(), "application/schema+json");
+  }
+  throw ApiError(ProblemType::not_found,
+                 "there are two schemas: /v1/schemas/scene and /v1/schemas/study");
 }
 
 Response show_problem(ApiContext& /*context*/, const RouteRequest& request) {

@@ -30,6 +30,13 @@ Response cancel_job(ApiContext& context, const RouteRequest& request);
 Response pause_job(ApiContext& context, const RouteRequest& request);
 Response resume_job(ApiContext& context, const RouteRequest& request);
 Response checkpoint_job(ApiContext& context, const RouteRequest& request);
+// api_submit_study.cpp
+Response submit_study(ApiContext& context, const RouteRequest& request);
+// api_studies.cpp
+Response list_studies(ApiContext& context, const RouteRequest& request);
+Response show_study(ApiContext& context, const RouteRequest& request);
+Response cancel_study(ApiContext& context, const RouteRequest& request);
+Response delete_study(ApiContext& context, const RouteRequest& request);
 // api_events.cpp
 Response stream_events(ApiContext& context, const RouteRequest& request);
 // api_sensors.cpp

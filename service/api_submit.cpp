@@ -1,26 +1,20 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <system_error>
-
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/plan.hpp"
 #include "engine/store/digest.hpp"
-#include "engine/store/new_folder.hpp"
-#include "engine/store/sha256.hpp"
 #include "service/admission.hpp"
 #include "service/api_routes.hpp"
-#include "service/job_file.hpp"
 #include "service/job_ids.hpp"
 #include "service/job_json.hpp"
 #include "service/query.hpp"
+#include "service/submission.hpp"
 
 namespace sluice {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestKey = 128;
 constexpr std::size_t kLongestLabel = 100;
 
 /// What stands in the query and the headers beside the scene.
@@ -32,32 +26,6 @@ struct SubmitOptions {
   std::string key;
 };
 
-/// curl --data sends the second one; a body without a type is taken as what it is.
-void require_json(const Request& request) {
-  const std::string_view type = request.header("content-type");
-  const std::string_view media = type.substr(0, type.find_first_of("; \t"));
-  for (const std::string_view known :
-       {"", "application/json", "application/x-www-form-urlencoded", "text/plain"}) {
-    if (media == known) return;
-  }
-  throw ApiError(ProblemType::unsupported_media_type,
-                 "a scene is JSON: send Content-Type: application/json");
-}
-
-std::string read_key(const Request& request) {
-  const std::string_view key = request.header("idempotency-key");
-  if (key.empty() && !request.headers.contains("idempotency-key")) return {};
-  const bool plain = key.find_first_not_of(
-                         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
-                         "-_.:+/=\"") == std::string_view::npos;
-  if (!key.empty() && key.size() <= kLongestKey && plain) return std::string(key);
-  throw ApiError(
-      ProblemType::invalid_parameter,
-      fmt::format("Idempotency-Key must be 1 to {} of A-Z a-z 0-9 - _ . : + / = \"", kLongestKey),
-      {{"errors", Json::array({{{"parameter", "Idempotency-Key"},
-                                {"detail", "is too long or has other characters"}}})}});
-}
-
 SubmitOptions read_options(const ApiContext& context, const Request& request) {
   QueryReader query(request);
   SubmitOptions options;
@@ -66,19 +34,17 @@ SubmitOptions read_options(const ApiContext& context, const Request& request) {
   options.priority = query.integer("priority", -1000, 1000).value_or(0);
   options.threads =
       query.integer("threads", 1, thread_limit(context.scheduler.limits())).value_or(1);
+  if (is_study_id(options.label)) {
+    query.reject("label", "has the form of a study's id, which its own jobs bear");
+  }
   query.finish();
   options.key = read_key(request);
   return options;
 }
 
-/// Tells requests with one key apart: all that makes a difference to the job.
 std::string hash_of(const Request& request, const SubmitOptions& options) {
-  Sha256 hash;
-  const std::string rest =
-      fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads);
-  hash.update(std::as_bytes(std::span(rest)));
-  hash.update(std::as_bytes(std::span(request.body)));
-  return hash.finish();
+  return request_hash(
+      request, fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads));
 }
 
 Response accepted(const Job& job, bool repeated, const std::string& waiting) {
@@ -87,36 +53,6 @@ Response accepted(const Job& job, bool repeated, const std::string& waiting) {
   if (repeated) response.headers.emplace_back("Idempotency-Replayed", "true");
   return response;
 }
-
-/// A job's folder that goes away again unless the job gets its row.
-class NewFolder {
- public:
-  NewFolder(const JobPaths& paths, std::string_view scene, const JobFile& file)
-      : root_(paths.root()) {
-    try {
-      publish_job_folder(root_, scene,
-                         {{job_file_path(root_).filename().string(), job_file_text(file)}});
-    } catch (...) {
-      remove();
-      throw;
-    }
-  }
-  ~NewFolder() {
-    if (!kept_) remove();
-  }
-  NewFolder(const NewFolder&) = delete;
-  NewFolder& operator=(const NewFolder&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  void remove() const {
-    std::error_code ignored;
-    std::filesystem::remove_all(root_, ignored);
-  }
-
-  std::filesystem::path root_;
-  bool kept_ = false;
-};
 
 Job new_job(ApiContext& context, const Admitted& admitted, const SubmitOptions& options) {
   Job job;
@@ -158,7 +94,7 @@ Response show_plan(const ApiContext& context, const Request& request,
 }  // namespace
 
 Response submit_job(ApiContext& context, const RouteRequest& request) {
-  require_json(request.http);
+  require_json(request.http, "a scene");
   const SubmitOptions options = read_options(context, request.http);
   if (options.dry_run) return show_plan(context, request.http, options);
   if (options.key.empty()) return make_job(context, request.http, options);

@@ -69,6 +69,12 @@ bool is_job_id(std::string_view text) {
          text.find_first_not_of(kDigits, 1) == std::string_view::npos;
 }
 
+bool is_study_id(std::string_view text) {
+  return text.starts_with('s') && is_job_id(fmt::format("j{}", text.substr(1)));
+}
+
+std::string study_id_of(std::string_view job_id) { return fmt::format("s{}", job_id.substr(1)); }
+
 std::optional<std::int64_t> time_of_job_id(std::string_view id) {
   if (!is_job_id(id)) return std::nullopt;
   return static_cast<std::int64_t>(read_half(id.substr(1, kHalf)));

@@ -24,6 +24,10 @@ class JobIds {
 
 /// Whether a text has the form of an id: safe as the name of a folder.
 [[nodiscard]] bool is_job_id(std::string_view text);
+/// Whether a text has the form of a study's id: that of a job's, with an "s" in front.
+[[nodiscard]] bool is_study_id(std::string_view text);
+/// The study's id that a fresh job's id makes.
+[[nodiscard]] std::string study_id_of(std::string_view job_id);
 /// When the id was made, Unix time in ms; empty for what is no id.
 [[nodiscard]] std::optional<std::int64_t> time_of_job_id(std::string_view id);
 

@@ -13,15 +13,15 @@ namespace {
 
 using Fault = JobStoreError::Fault;
 
-void require_room(SqliteDb& db, std::size_t limit) {
+void require_room(SqliteDb& db, std::size_t wanted, std::size_t limit) {
   const auto queued =
       static_cast<std::size_t>(db.number("SELECT count(*) FROM jobs WHERE state = 'queued'"));
-  if (queued >= limit) {
-    throw JobStoreError(Fault::full,
-                        fmt::format("{} jobs are queued, and {} may be: try again when "
-                                    "some have run",
-                                    queued, limit));
-  }
+  if (queued + wanted <= limit) return;
+  const std::string more = wanted == 1 ? "" : fmt::format(", and {} more do not fit", wanted);
+  throw JobStoreError(Fault::full,
+                      fmt::format("{} jobs are queued, and {} may be{}: try again when "
+                                  "some have run",
+                                  queued, limit, more));
 }
 
 /// What a submitted job may bring along; all else begins from nothing.
@@ -58,12 +58,28 @@ JobStore::Submitted JobStore::submit(const Job& job, const std::string& key,
   SqliteTransaction transaction(db);
   if (std::optional<Job> known = impl_->job_of_key(key, body_hash))
     return {*std::move(known), true};
-  require_room(db, limit);
+  require_room(db, 1, limit);
   Job added = fresh_job(job, job.id.empty() ? impl_->new_id() : job.id, unix_time_ms());
   insert_job(db, added);
   if (!key.empty()) insert_key(db, key, {added.id, body_hash});
   impl_->commit_with_event(transaction, {0, added.id, added.updated_ms, "submitted", "{}"});
   return {std::move(added), false};
+}
+
+std::vector<Job> JobStore::submit_all(const std::vector<Job>& jobs, std::size_t limit) {
+  const Impl::Lock lock = impl_->hold();
+  SqliteDb& db = impl_->db();
+  SqliteTransaction transaction(db);
+  require_room(db, jobs.size(), limit);
+  std::vector<Job> all;
+  for (const Job& job : jobs) {
+    all.push_back(fresh_job(job, job.id.empty() ? impl_->new_id() : job.id, unix_time_ms()));
+    insert_job(db, all.back());
+    insert_event(db, {0, all.back().id, all.back().updated_ms, "submitted", "{}"});
+  }
+  transaction.commit();
+  impl_->notify();
+  return all;
 }
 
 std::optional<Job> JobStore::claim(int threads, const std::vector<std::string>& except) {

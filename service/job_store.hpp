@@ -78,6 +78,8 @@ class JobStore {
   /// (full).
   Submitted submit(const Job& job, const std::string& key, const std::string& body_hash,
                    std::size_t limit);
+  /// Adds queued jobs without keys, all in one transaction: all of them or none (full).
+  std::vector<Job> submit_all(const std::vector<Job>& jobs, std::size_t limit);
   /// The job that a key made, before any work is done for it. Throws key_reused.
   [[nodiscard]] std::optional<Job> find_by_key(const std::string& key,
                                                const std::string& body_hash) const;
@@ -87,6 +89,10 @@ class JobStore {
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) const;
   /// All states, those without a job too.
   [[nodiscard]] std::vector<std::pair<JobState, std::size_t>> count_by_state() const;
+
+  /// Of the jobs with this label; only states that there are.
+  [[nodiscard]] std::vector<std::pair<JobState, std::size_t>> count_by_state(
+      const std::string& label) const;
 
   /// Claims the queued job with the highest priority, then age, that needs at most `threads`: one
   /// UPDATE ... RETURNING, with a new token. Jobs in `except` are passed over.

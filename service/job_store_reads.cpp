@@ -36,6 +36,20 @@ std::vector<std::pair<JobState, std::size_t>> JobStore::count_by_state() const {
   return counts;
 }
 
+std::vector<std::pair<JobState, std::size_t>> JobStore::count_by_state(
+    const std::string& label) const {
+  const Impl::Lock lock = impl_->hold();
+  std::vector<std::pair<JobState, std::size_t>> counts;
+  SqliteStatement rows(impl_->db(),
+                       "SELECT state, count(*) FROM jobs WHERE label = ?1 GROUP BY state", label);
+  while (rows.step()) {
+    if (const auto state = job_state(rows.text(0))) {
+      counts.emplace_back(*state, static_cast<std::size_t>(rows.integer(1)));
+    }
+  }
+  return counts;
+}
+
 std::vector<JobEvent> JobStore::events(const std::string& id, std::int64_t after,
                                        std::size_t limit) const {
   const Impl::Lock lock = impl_->hold();

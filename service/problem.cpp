@@ -26,6 +26,8 @@ constexpr std::array kProblems{
                  "See /openapi.json for all paths."},
     ProblemEntry{no_such_job, 404, "no-such-job", "There is no such job",
                  "GET /v1/jobs lists the jobs that there are."},
+    ProblemEntry{no_such_study, 404, "no-such-study", "There is no such study",
+                 "GET /v1/studies lists the studies that there are."},
     ProblemEntry{no_such_sensor, 404, "no-such-sensor", "The job has no such sensor",
                  "GET /v1/jobs/{id}/sensors lists its sensors."},
     ProblemEntry{no_such_file, 404, "no-such-file", "The job has no such file",
@@ -53,6 +55,8 @@ constexpr std::array kProblems{
                  "Ask for one range inside the file, or leave Range out."},
     ProblemEntry{invalid_scene, 422, "invalid-scene", "The scene is not valid",
                  "Correct what `errors` names; /v1/schemas/scene describes every key."},
+    ProblemEntry{invalid_study, 422, "invalid-study", "The study is not valid",
+                 "Correct what `errors` names; /v1/schemas/study describes every key."},
     ProblemEntry{over_limit, 422, "over-limit", "More than this service allows",
                  "Make the scene coarser, shorter or with fewer samples and frames, or raise the "
                  "service's limit."},

@@ -4,6 +4,10 @@
 #include <system_error>
 #include <vector>
 
+#include "engine/store/job_folder.hpp"
+#include "service/job_ids.hpp"
+#include "service/study_store.hpp"
+
 namespace sluice {
 namespace {
 
@@ -11,6 +15,19 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kDeletedPrefix = ".deleted-";
 constexpr std::size_t kPage = 500;
+constexpr std::uint64_t kLargestReport = 1 << 20;  // bytes
+
+/// A study keeps what its run came to.
+void keep_for_study(const JobStore& store, const fs::path& data, const std::string& id) {
+  const auto job = store.find(id);
+  if (!job || !is_ended(job->state) || !is_study_id(job->label)) return;
+  const JobPaths paths(data / "jobs" / id);
+  std::error_code ignored;
+  const bool reported = fs::exists(paths.report(), ignored);
+  keep_run(data, job->label, job->name,
+           {std::string(to_string(job->state)), job->reason,
+            reported ? read_text(paths.report(), kLargestReport) : ""});
+}
 
 /// False when the job was deleted or extended by a request at the same time.
 bool try_to_delete(JobStore& store, const fs::path& data, const std::string& id) {
@@ -46,6 +63,7 @@ std::size_t delete_old_jobs_in(JobStore& store, const fs::path& data, JobState s
 }  // namespace
 
 void delete_job(JobStore& store, const fs::path& data, const std::string& id) {
+  keep_for_study(store, data, id);
   const fs::path root = data / "jobs" / id;
   const fs::path hidden = data / "jobs" / (std::string(kDeletedPrefix) + id);
   std::error_code missing;

@@ -15,6 +15,7 @@ namespace sluice {
 struct ServiceLimits {
   int cores = 0;  ///< threads of all workers together; 0: the machine's
   std::size_t queued_jobs = 10000;
+  std::size_t runs_per_study = 100;
   std::uint64_t particles_per_job = 5'000'000;
   std::uint64_t memory_per_job = 0;          ///< bytes; 0: three quarters of the machine's
   std::uint64_t disk_per_job = 20ULL << 30;  ///< bytes

@@ -12,7 +12,8 @@ namespace {
 std::string state_of(const SetupResult& setup, const StudyResult& result) {
   if (setup.completed == setup.runs.size()) return "completed";
   std::string text;
-  for (const RunState state : {RunState::failed, RunState::stopped, RunState::waiting}) {
+  for (const RunState state :
+       {RunState::failed, RunState::stopped, RunState::running, RunState::waiting}) {
     const auto count = std::count_if(setup.runs.begin(), setup.runs.end(),
                                      [&](std::size_t k) { return result.rows[k].state == state; });
     if (count == 0) continue;
@@ -293,6 +294,12 @@ Chart study_chart(const StudyResult& result) {
                                       setup->name, *setup->error, *setup->core_seconds));
     line.x.push_back(*setup->core_seconds);
     line.y.push_back(*setup->error);
+  }
+  for (const SetupResult& setup : result.setups) {
+    const auto failed = std::count_if(setup.runs.begin(), setup.runs.end(), [&](std::size_t k) {
+      return result.rows[k].state == RunState::failed;
+    });
+    if (failed > 0) chart.notes.push_back(fmt::format("failed, so not drawn: {}", setup.name));
   }
   chart.lines.push_back(std::move(line));
   if (!others.x.empty()) chart.marks.push_back(std::move(others));

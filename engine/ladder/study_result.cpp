@@ -149,6 +149,8 @@ std::string_view to_string(RunState state) {
   switch (state) {
     case RunState::waiting:
       return "waiting";
+    case RunState::running:
+      return "running";
     case RunState::stopped:
       return "stopped";
     case RunState::completed:

@@ -10,7 +10,7 @@
 
 namespace sluice {
 
-enum class RunState { waiting, stopped, completed, failed };
+enum class RunState { waiting, running, stopped, completed, failed };
 [[nodiscard]] std::string_view to_string(RunState state);
 
 /// How one run of a study ended. Only a completed one has an error and a cost.

@@ -42,10 +42,13 @@ class Backup(unittest.TestCase):
                 if name.startswith("checkpoint-") and name.endswith(".h5")]
 
     def a_copy(self):
-        """A copy with one small job that has ended."""
+        """A copy with one small job and a study of one, that have ended."""
         with Server(PROGRAM, *OPTIONS, data=self.data) as server:
             job = server.submit(scene(0.05))
             server.wait_for(job, "completed")
+            made = server.ask("POST", "/v1/studies", {"name": "kept", "scene": scene(0.05)}).json()
+            self.study = made["id"]
+            server.wait_for(made["runs"][0]["job"], "completed")
             code, said = script("backup.sh", self.data, self.copy)
             self.assertEqual(code, 0, said)
         return job
@@ -111,6 +114,8 @@ class Backup(unittest.TestCase):
         os.remove(os.path.join(self.restored, "jobs.sqlite"))
         with Server(PROGRAM, *OPTIONS, "--rebuild", data=self.restored) as server:
             self.assertEqual(server.ask("GET", f"/v1/jobs/{job}").json()["state"], "completed")
+            study = server.ask("GET", f"/v1/studies/{self.study}").json()
+            self.assertEqual(study["runs"][0]["state"], "completed")
 
 
 if __name__ == "__main__":

@@ -561,6 +561,47 @@ class Strangers(Case):
             self.assertEqual((submit.returncode, submit.stderr), (SERVICE_FAILED, "sluice: t: d\n"))
 
 
+class Studies(Case):
+    def files(self, **more):
+        """A study of a scene that stands in a file beside it."""
+        self.write(scene(0.05), "base.json")
+        return self.write({"name": "pair", "scene": "base.json", "targets": [0.5],
+                           "vary": [{"key": "/resolution/spacing", "values": [0.06, 0.05]}],
+                           **more}, "study.json")
+
+    def test_a_study_is_run_by_the_service_watched_shown_and_deleted(self):
+        at = ("--server", self.serve().url)
+        said = self.expect(DONE, "study", self.files(), "--watch", *at)
+        study = said.stdout.split()[0]
+        self.assertRegex(study, "^s[0-9a-v]{20}$")
+        self.assertIn("pair-spacing-0.06: completed", said.stderr)
+        self.assertIn("pair-spacing-0.05: completed", said.stderr)
+        self.assertIn("| pair-spacing-0.06 | completed |", said.stdout)
+        shown = self.expect(DONE, "study", study, "--json", *at).stdout
+        self.assertEqual([run["state"] for run in json.loads(shown)["runs"]], 2 * ["completed"])
+        self.assertEqual(len(self.expect(DONE, "list", "--label", study, *at).stdout.splitlines()), 3)
+        self.assertEqual(self.expect(DONE, "cancel", study, *at).stdout, f"{study} ended\n")
+        self.expect(DONE, "delete", study, *at)
+        self.expect(NOT_FOUND, "study", study, *at)
+
+    def test_one_key_makes_one_study(self):
+        at = ("--server", self.serve().url, "--idempotency-key", "once")
+        path = self.files()
+        ids = {self.expect(DONE, "study", path, *at).stdout.split()[0] for _ in range(2)}
+        self.assertEqual(len(ids), 1)
+
+    def test_what_is_wrong_with_a_study_is_said_line_by_line_and_options_of_folders_are_refused(self):
+        at = ("--server", self.serve("--max-study-runs", "1").url)
+        refused = self.expect(INVALID_SCENE, "study", self.files(), *at).stderr
+        self.assertIn("makes 2 runs, more than 1", refused)
+        wrong = self.expect(INVALID_SCENE, "study", self.files(vary=[{"key": "/end_tim",
+                                                                      "values": [1]}]), *at).stderr
+        self.assertIn("/end_tim", wrong)
+        self.expect(USAGE, "study", self.files(), "--folder", self.folder, *at)
+        self.expect(USAGE, "study", self.files(), "--watch")
+        self.expect(USAGE, "study", os.path.join(self.folder, "none.json"))
+
+
 if __name__ == "__main__":
     PROGRAM = sys.argv.pop(1)
     unittest.main()

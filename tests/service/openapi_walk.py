@@ -10,6 +10,7 @@ import re
 import signal
 import socket
 import sys
+import time
 
 import jsonschema
 from live import Answer, Server, scene
@@ -23,9 +24,9 @@ TRANSPORT = {"bad-request", "request-timeout", "body-too-large", "uri-too-long",
 
 
 class Walk:
-    def __init__(self, document, scene_schema):
+    def __init__(self, document, schemas):
         self.document = document
-        self.scene_schema = scene_schema
+        self.schemas = schemas  # by their paths
         self.seen = set()  # (operation, status, problem slug or "")
         self.failures = []
 
@@ -52,8 +53,7 @@ class Walk:
         raise AssertionError(f"{method} {path} is not in the document")
 
     def validate(self, schema, value):
-        resolver = jsonschema.RefResolver(
-            "", self.document, store={"/v1/schemas/scene": self.scene_schema})
+        resolver = jsonschema.RefResolver("", self.document, store=self.schemas)
         jsonschema.Draft202012Validator(schema, resolver=resolver).validate(value)
 
     def check(self, method, target, answer):
@@ -127,6 +127,8 @@ def raw(server, text, linger=b""):
 
 
 def fill(path, job):
+    if path.startswith("/v1/studies/"):
+        job = "s" + job[1:]
     return (path.replace("{id}", job).replace("{slug}", "no-such-job")
             .replace("sensors/{name}", "sensors/P1").replace("files/{name}", "files/scene.json")
             .replace("schemas/{name}", "schemas/scene"))
@@ -157,7 +159,7 @@ def walk_every_operation(walk, server, guarded, job):
 
 def walk_meta(walk, server):
     for target in ("/", "/openapi.json", "/livez", "/readyz", "/metrics", "/v1/schemas",
-                   "/v1/schemas/scene", "/v1/schemas/none", "/problems/none"):
+                   "/v1/schemas/scene", "/v1/schemas/study", "/v1/schemas/none", "/problems/none"):
         walk.ask(server, "GET", target)
     for name in walk.document["components"]["schemas"]["Problem"]["properties"]["type"]["enum"]:
         walk.ask(server, "GET", name)
@@ -173,6 +175,58 @@ def walk_submissions(walk, server):
     assert walk.ask(server, "POST", "/v1/jobs?label=walk", scene(), key).json()["id"] == first
     walk.ask(server, "POST", "/v1/jobs", scene(0.2), key)
     return first
+
+
+def study(**more):
+    """Two tiny runs."""
+    return {"name": "walk", "scene": scene(), "targets": [0.5],
+            "vary": [{"key": "/end_time", "values": [0.05, 0.1]}], **more}
+
+
+def walk_study(walk, server):
+    walk.ask(server, "POST", "/v1/studies?dry_run=1", study())
+    walk.ask(server, "POST", "/v1/studies", "{}")
+    walk.ask(server, "POST", "/v1/studies", study(threads=1000))
+    walk.ask(server, "POST", "/v1/studies", "<study/>", {"Content-Type": "text/xml"})
+    key = {"Idempotency-Key": "walk-study"}
+    made = walk.ask(server, "POST", "/v1/studies", study(), key).json()
+    target = f"/v1/studies/{made['id']}"
+    assert walk.ask(server, "POST", "/v1/studies", study(), key).json()["id"] == made["id"]
+    walk.ask(server, "POST", "/v1/studies?priority=1", study(), key)
+    for run in made["runs"]:
+        server.wait_for(run["job"], "completed")
+    for query in ("", "?format=json", "?format=markdown", "?format=csv", "?format=svg",
+                  "?format=pdf"):
+        walk.ask(server, "GET", target + query)
+    walk.ask(server, "GET", "/v1/studies?limit=1")
+    walk.ask(server, "POST", target + "/cancel")
+    walk.ask(server, "DELETE", target)
+    walk.ask(server, "GET", target)
+
+
+def walk_open_study(walk, server):
+    """With room in the queue and the only core taken: a study that waits, or does not fit."""
+    many = {"key": "/end_time", "values": [0.01, 0.02, 0.03, 0.04]}
+    walk.ask(server, "POST", "/v1/studies", study(vary=[many]))
+    made = walk.ask(server, "POST", "/v1/studies?priority=1", study()).json()["id"]
+    walk.ask(server, "DELETE", f"/v1/studies/{made}")
+    walk.ask(server, "POST", f"/v1/studies/{made}/cancel")
+
+
+def walk_running_study(walk, server):
+    """A study whose job runs: its cancel has to wait for the worker."""
+    endless = study(scene=scene(1000.0, spacing=0.01, interval=0.1), vary=[])
+    made = walk.ask(server, "POST", "/v1/studies", endless).json()
+    server.wait_until("the study's job to run", lambda: server.ask(
+        "GET", f"/v1/jobs/{made['runs'][0]['job']}").json()["progress"])
+    worker = server.workers()[0]
+    os.kill(worker, signal.SIGSTOP)
+    try:
+        walk.ask(server, "POST", f"/v1/studies/{made['id']}/cancel")
+    finally:
+        os.kill(worker, signal.SIGCONT)
+    while server.ask("GET", f"/v1/studies/{made['id']}").json()["state"] != "ended":
+        time.sleep(0.05)
 
 
 def walk_queue(walk, server, running):
@@ -273,12 +327,17 @@ def main():
     program, root = sys.argv[1:3]
     with open(os.path.join(root, "schemas/openapi.json"), encoding="utf-8") as stream:
         document = json.load(stream)
-    with open(os.path.join(root, "schemas/scene.schema.json"), encoding="utf-8") as stream:
-        walk = Walk(document, json.load(stream))
+    schemas = {}
+    for name in ("scene", "study"):
+        with open(os.path.join(root, f"schemas/{name}.schema.json"), encoding="utf-8") as stream:
+            schemas[f"/v1/schemas/{name}"] = json.load(stream)
+    walk = Walk(document, schemas)
     for path, method, operation in walk.operations():
         body = operation.get("requestBody", {}).get("content", {}).get("application/json", {})
         if path == "/v1/jobs" and method == "post":
             walk.validate({"$ref": "/v1/schemas/scene"}, body["example"])
+        if path == "/v1/studies" and method == "post":
+            walk.validate({"$ref": "/v1/schemas/study"}, body["example"])
 
     with Server(program, "--cores", "1", "--max-queued", "3", "--max-particles", "100000",
                 "--max-disk", "100000000", "--disk-reserve", "0") as server:
@@ -298,9 +357,12 @@ def main():
         walk.ask(server, "POST", f"/v1/jobs/{extra}/resume", {"end_time": 1e4})  # 1e7 samples
         walk_ended_job(walk, server, done)
         server.wait_for(done, "completed")
+        walk_study(walk, server)
+        walk_running_study(walk, server)
         running = server.submit(scene(1000.0, spacing=0.01, interval=0.1))
         server.wait_until("the job to run", lambda: server.ask(
             "GET", f"/v1/jobs/{running}").json()["progress"])
+        walk_open_study(walk, server)
         walk_queue(walk, server, running)
         walk_streams(walk, server, running)
         walk_stop(walk, server, running)

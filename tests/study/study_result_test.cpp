@@ -68,6 +68,8 @@ TEST(StudyResult, CountsNoFailedRunAndShowsItWithItsReason) {
   EXPECT_NE(study_text(result).find("speed above c"), std::string::npos);
   EXPECT_NE(study_csv(result).find("a,a,a,failed,,"), std::string::npos);
   EXPECT_TRUE(study_json(result)["runs"][0]["error"].is_null());
+  EXPECT_NE(chart_svg(study_chart(result), SvgPlace::file).find("failed, so not drawn: a"),
+            std::string::npos);
 }
 
 TEST(StudyResult, AveragesRepeatsAndTellsTheirSpread) {

@@ -1,0 +1,206 @@
+#include "service/study_store.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "engine/scene/parse.hpp"
+#include "engine/store/errors.hpp"
+#include "engine/store/publish.hpp"
+#include "service/job_ids.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 21;
+
+fs::path studies_of(const fs::path& data) { return data / "studies"; }
+fs::path submission_in(const fs::path& folder) { return folder / "submission.json"; }
+fs::path document_in(const fs::path& folder) { return folder / "study.json"; }
+fs::path kept_in(const fs::path& folder, const std::string& run) {
+  return folder / "kept" / (run + ".json");
+}
+
+void make_folder(const fs::path& path, FileSystem& system) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error && system.sync_folder(path.parent_path()) == 0) return;
+  const int code = error ? error.value() : errno;
+  throw StorageError(code == ENOSPC ? StorageFault::disk_full : StorageFault::unwritable,
+                     fmt::format("cannot make {}: {}", path.string(), std::strerror(code)));
+}
+
+std::string text_of(const json& object) {
+  return object.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+json to_json(const StudyRecord& record) {
+  return {{"name", record.name},
+          {"runs", record.runs},
+          {"priority", record.priority},
+          {"created_ms", record.created_ms},
+          {"key", record.key},
+          {"body_hash", record.body_hash},
+          {"made", record.stage == StudyRecord::Stage::made}};
+}
+
+StudyRecord from_json(const std::string& id, const json& object) {
+  StudyRecord record;
+  record.id = id;
+  record.name = object.at("name").get<std::string>();
+  record.runs = object.at("runs").get<std::size_t>();
+  record.priority = object.at("priority").get<int>();
+  record.created_ms = object.at("created_ms").get<std::int64_t>();
+  record.key = object.at("key").get<std::string>();
+  record.body_hash = object.at("body_hash").get<std::string>();
+  record.stage =
+      object.at("made").get<bool>() ? StudyRecord::Stage::made : StudyRecord::Stage::making;
+  return record;
+}
+
+std::optional<StudyRecord> read_record(const fs::path& folder) {
+  try {
+    return from_json(folder.filename().string(),
+                     json::parse(read_text(submission_in(folder), kLargestFile)));
+  } catch (const json::exception&) {
+    return std::nullopt;
+  } catch (const StorageError& error) {
+    if (error.fault() == StorageFault::io) throw;
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+StudyStore::StudyStore(const fs::path& data, FileSystem& system)
+    : root_(studies_of(data)), system_(&system) {
+  make_folder(root_, system);
+  read_all();
+}
+
+void StudyStore::read_all() {
+  std::vector<fs::path> broken;
+  for (const fs::directory_entry& entry : fs::directory_iterator(root_)) {
+    const fs::path& path = entry.path();
+    if (entry.is_symlink() || !entry.is_directory() || !is_study_id(path.filename().string())) {
+      continue;
+    }
+    if (!fs::exists(submission_in(path))) {
+      broken.push_back(path);
+    } else if (auto record = read_record(path)) {
+      records_.emplace(record->id, *std::move(record));
+    }
+  }
+  for (const fs::path& path : broken) fs::remove_all(path);
+}
+
+void StudyStore::write(const StudyRecord& record) const {
+  publish_text(submission_in(folder(record.id)), text_of(to_json(record)), *system_);
+}
+
+void StudyStore::add(const StudyRecord& record, std::string_view document) {
+  const fs::path place = folder(record.id);
+  try {
+    make_folder(place, *system_);
+    publish_text(document_in(place), document, *system_);
+    // Last: with it there is a study.
+    write(record);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(place, ignored);
+    throw;
+  }
+  const std::scoped_lock lock(mutex_);
+  records_[record.id] = record;
+}
+
+void StudyStore::set_made(const std::string& id) {
+  auto record = find(id);
+  if (!record) return;
+  record->stage = StudyRecord::Stage::made;
+  write(*record);
+  const std::scoped_lock lock(mutex_);
+  records_[id] = *record;
+}
+
+void StudyStore::remove(const std::string& id) {
+  // Without this file the rest is a left-over, whatever happens next.
+  std::error_code error;
+  fs::remove(submission_in(folder(id)), error);
+  if (error) {
+    throw StorageError(StorageFault::unwritable,
+                       fmt::format("cannot remove study {}: {}", id, error.message()));
+  }
+  fs::remove_all(folder(id), error);
+  const std::scoped_lock lock(mutex_);
+  records_.erase(id);
+}
+
+std::optional<StudyRecord> StudyStore::find(const std::string& id) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = records_.find(id);
+  return found == records_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<StudyRecord> StudyStore::find_by_key(const std::string& key) const {
+  if (key.empty()) return std::nullopt;
+  const std::scoped_lock lock(mutex_);
+  for (const auto& [id, record] : records_) {
+    if (record.key == key) return record;
+  }
+  return std::nullopt;
+}
+
+std::vector<StudyRecord> StudyStore::list(const std::string& after, std::size_t limit) const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<StudyRecord> page;
+  auto next = after.empty() ? records_.end() : records_.lower_bound(after);
+  while (next != records_.begin() && page.size() < limit) page.push_back((--next)->second);
+  return page;
+}
+
+std::vector<StudyRecord> StudyStore::unfinished() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<StudyRecord> all;
+  for (const auto& [id, record] : records_) {
+    if (record.stage == StudyRecord::Stage::making) all.push_back(record);
+  }
+  return all;
+}
+
+std::string StudyStore::document(const std::string& id) const {
+  return read_text(document_in(folder(id)), kMaxSceneBytes + 1);
+}
+
+std::optional<KeptRun> StudyStore::kept_run(const std::string& id, const std::string& run) const {
+  const fs::path path = kept_in(folder(id), run);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return std::nullopt;
+  try {
+    const json object = json::parse(read_text(path, kLargestFile));
+    return KeptRun{object.at("state").get<std::string>(), object.at("reason").get<std::string>(),
+                   object.at("report").get<std::string>()};
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+void keep_run(const fs::path& data, const std::string& study, const std::string& run,
+              const KeptRun& kept) {
+  const fs::path folder = studies_of(data) / study;
+  std::error_code ignored;
+  if (!is_study_id(study) || !fs::exists(submission_in(folder), ignored)) return;
+  const fs::path path = kept_in(folder, run);
+  make_folder(path.parent_path(), FileSystem::real());
+  publish_text(path,
+               text_of({{"state", kept.state}, {"reason", kept.reason}, {"report", kept.report}}));
+}
+
+}  // namespace sluice

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/store/job_folder.hpp"
+#include "service/job_file.hpp"
+#include "service/message.hpp"
+
+namespace sluice {
+
+/// curl --data sends a form's type; a body without a type is taken as what it is. Throws
+/// ApiError(unsupported_media_type); `what` is what the body should be, such as "a scene".
+void require_json(const Request& request, std::string_view what);
+
+/// The Idempotency-Key; empty when there is none. Throws ApiError(invalid_parameter).
+[[nodiscard]] std::string read_key(const Request& request);
+
+/// Tells requests with one key apart: SHA-256 of the body and of all else that makes a difference.
+[[nodiscard]] std::string request_hash(const Request& request, std::string_view rest);
+
+/// A job's folder that goes away again unless the job gets its row.
+class NewFolder {
+ public:
+  NewFolder(const JobPaths& paths, std::string_view scene, const JobFile& file);
+  NewFolder(NewFolder&& other) noexcept;
+  NewFolder& operator=(NewFolder&&) = delete;
+  ~NewFolder();
+  void keep() { kept_ = true; }
+
+ private:
+  void remove() const;
+
+  std::filesystem::path root_;
+  bool kept_ = false;
+};
+
+}  // namespace sluice
