@@ -15,8 +15,6 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 CaseRun refused_run() {
@@ -126,7 +124,7 @@ TEST(StabilityReport, ALineHoldsVerdictFiguresAndWhatWasMissed) {
 }
 
 TEST(StabilityReport, JsonHoldsTheVerdictObjectAndNullForWhatIsNone) {
-  const Json all = suite_json(three_cases());
+  const nlohmann::json all = suite_json(three_cases());
   EXPECT_EQ(all["met"], 1);
   EXPECT_EQ(all["known"], 1);
   EXPECT_EQ(all["missed"], 1);
@@ -136,7 +134,7 @@ TEST(StabilityReport, JsonHoldsTheVerdictObjectAndNullForWhatIsNone) {
   EXPECT_EQ(all["cases"][1]["cause"], "eq. 7 lifts it");
   EXPECT_TRUE(all["cases"][1]["figures"][0]["value"].is_null());
   EXPECT_FALSE(all["cases"][1]["figures"][0]["met"]);
-  const Json verdict = all["cases"][2]["verdict"];
+  const nlohmann::json verdict = all["cases"][2]["verdict"];
   EXPECT_EQ(verdict["verdict"], "unstable");
   EXPECT_EQ(verdict["reason"], "density too high");
   EXPECT_EQ(verdict["step"], 17);
@@ -207,7 +205,7 @@ TEST(StabilityMap, CountsTheCellsThatDifferFromThePrediction) {
   map.rows[1].cells = {cell(0.5, false, true), cell(0.7, false, false), cell(0.9, false, true)};
   EXPECT_EQ(map.cells(), 5U);
   EXPECT_EQ(map.disagreements(), 2U);
-  const Json json = map_json(map);
+  const nlohmann::json json = map_json(map);
   EXPECT_EQ(json["disagreements"], 2);
   EXPECT_EQ(json["rows"][0]["cells"][1]["measured"], "unstable");
   EXPECT_EQ(json["rows"][1]["cells"][1]["predicted"], "unstable");
@@ -216,19 +214,19 @@ TEST(StabilityMap, CountsTheCellsThatDifferFromThePrediction) {
 TEST(StabilityScenes, SchemesAreThoseOfTheExamples) {
   const auto example = [](const std::string& name) {
     std::ifstream file(std::string(SLUICE_SOURCE_DIR) + "/schemas/examples/" + name);
-    return scheme_of(Json::parse(file));
+    return scheme_of(nlohmann::json::parse(file));
   };
   EXPECT_EQ(recommended_scheme(), example("still-water.json"));
   EXPECT_EQ(paper_scheme(), example("dambreak-paper.json"));
 }
 
 TEST(StabilityScenes, WithoutATankTheSchemesWallTermsAreLeftOut) {
-  const Json drop =
+  const nlohmann::json drop =
       with_scheme(in_space("drop", circle(Vec::Zero(), 1.0), 0.1, 10.0, 1.0), recommended_scheme());
   EXPECT_FALSE(drop["numerics"].contains("wall_friction"));
-  EXPECT_EQ(drop["resolution"], (Json{{"spacing", 0.1}, {"smoothing_ratio", 1.5}}));
+  EXPECT_EQ(drop["resolution"], (nlohmann::json{{"spacing", 0.1}, {"smoothing_ratio", 1.5}}));
   EXPECT_TRUE(parse_scene(drop.dump()).scene.has_value());
-  const Json tank = with_scheme(still_water("tank", {}), recommended_scheme());
+  const nlohmann::json tank = with_scheme(still_water("tank", {}), recommended_scheme());
   EXPECT_TRUE(tank["numerics"].contains("wall_friction"));
   EXPECT_TRUE(parse_scene(tank.dump()).scene.has_value());
 }
