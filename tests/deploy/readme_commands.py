@@ -85,9 +85,9 @@ def check(folder, said):
         outcome = json.load(out)
     assert outcome["state"] == "completed", outcome["state"]
     assert outcome["bit_exact"] is True
-    # Once for the killed worker, once for the killed service.
+    # Once for the killed worker, unless the service was killed before it saw that, once for the service.
     resumed = re.findall(r'"name":"resumed".*?"step":(\d+)', said)
-    assert len(resumed) == 2 and int(resumed[0]) > 0, f"resumed at steps {resumed}"
+    assert len(resumed) in (1, 2) and int(resumed[0]) > 0, f"resumed at steps {resumed}"
     assert re.search(r"^relative L2", said, re.MULTILINE), "no report"
     with open(os.path.join(folder, "P1.csv"), encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
