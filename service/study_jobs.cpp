@@ -11,6 +11,7 @@
 #include "service/admission.hpp"
 #include "service/job_ids.hpp"
 #include "service/problem.hpp"
+#include "service/service_log.hpp"
 #include "service/submission.hpp"
 
 namespace sluice {
@@ -134,8 +135,9 @@ void finish_studies(ApiContext& context) {
     try {
       const StudyPlan plan = plan_study(context.studies.document(study.id), nullptr, nullptr);
       make_study_jobs(context, study, plan);
-    } catch (const std::exception&) {
-      // Its document says so: the study stays "making", and the next start tries again.
+    } catch (const std::exception& error) {
+      // The study stays as it is, and the next start tries again.
+      log_line({{"event", "study_unfinished"}, {"study", study.id}, {"message", error.what()}});
     }
   }
 }
