@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/job_text.hpp"
@@ -27,29 +28,32 @@ struct ActionArguments {
 
 using MakeRequest = HttpRequest (*)(const std::string& id, const ActionArguments& arguments);
 
-HttpRequest post(const std::string& id, std::string_view action) {
+/// The path of a job or a study.
+std::string target_of(const std::string& id, std::string_view rest = "") {
+  return is_study_id(id) ? study_target(id, rest) : job_target(id, rest);
+}
+
+HttpRequest post(std::string target) {
   HttpRequest request;
   request.method = "POST";
-  request.target = job_target(id, action);
+  request.target = std::move(target);
   return request;
 }
 
 HttpRequest cancel(const std::string& id, const ActionArguments&) {
-  if (!is_study_id(id)) return post(id, "/cancel");
-  HttpRequest request;
-  request.method = "POST";
-  request.target = study_target(id, "/cancel");
-  return request;
+  return post(target_of(id, "/cancel"));
 }
 
-HttpRequest pause(const std::string& id, const ActionArguments&) { return post(id, "/pause"); }
+HttpRequest pause(const std::string& id, const ActionArguments&) {
+  return post(job_target(id, "/pause"));
+}
 
 HttpRequest checkpoint(const std::string& id, const ActionArguments&) {
-  return post(id, "/checkpoint");
+  return post(job_target(id, "/checkpoint"));
 }
 
 HttpRequest resume(const std::string& id, const ActionArguments& arguments) {
-  HttpRequest request = post(id, "/resume");
+  HttpRequest request = post(job_target(id, "/resume"));
   if (!arguments.end_time) return request;
   request.body = Json{{"end_time", *arguments.end_time}}.dump();
   request.headers = {{"Content-Type", "application/json"}};
@@ -59,7 +63,7 @@ HttpRequest resume(const std::string& id, const ActionArguments& arguments) {
 HttpRequest remove(const std::string& id, const ActionArguments&) {
   HttpRequest request;
   request.method = "DELETE";
-  request.target = is_study_id(id) ? study_target(id) : job_target(id);
+  request.target = target_of(id);
   return request;
 }
 

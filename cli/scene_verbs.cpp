@@ -128,21 +128,14 @@ void show_plan(const SceneArguments& arguments) {
                                                   trial);
 }
 
-/// Regions that overlap, and a scene without fluid, show only when it is filled.
-std::vector<Problem> problems_when_filled(const Scene& scene) {
-  if (estimate(scene).fluid_particles > kTrialParticles) return {};
-  try {
-    (void)create_particles(scene);
-  } catch (const SceneError& error) {
-    return {error.problem()};
-  }
-  return {};
-}
-
 /// All problems as JSON on stdout: for editors and scripts.
 void validate_as_json(const std::string& path) {
   ParseResult result = parse_scene(read_text(path, kMaxSceneBytes + 1));
-  if (result.scene) result.problems = problems_when_filled(*result.scene);
+  if (result.scene && estimate(*result.scene).fluid_particles <= kTrialParticles) {
+    if (auto problem = problem_when_filled(*result.scene)) {
+      result.problems.push_back(*std::move(problem));
+    }
+  }
   Json problems = Json::array();
   for (const Problem& problem : result.problems) {
     problems.push_back(Json{{"pointer", problem.pointer}, {"message", problem.message}});

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 #include "cli/json_text.hpp"
 #include "cli/problem_text.hpp"
@@ -95,6 +96,13 @@ void add_service_switch(CLI::App& verb, ServiceOptions& options, bool& of_servic
       },
       "Address of the service whose job this is");
   add_token_option(verb, options);
+}
+
+Patience patience_on_stderr(double seconds, std::string last_words) {
+  const auto say = [](const std::string& line) {
+    std::fputs(fmt::format("sluice: {}\n", line).c_str(), stderr);
+  };
+  return {seconds, say, std::move(last_words)};
 }
 
 ServiceClient::ServiceClient(const ServiceOptions& options)

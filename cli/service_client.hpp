@@ -32,6 +32,9 @@ struct Patience {
   std::string last_words;                       ///< what to do when it was in vain
 };
 
+/// Says on stderr that it waits.
+[[nodiscard]] Patience patience_on_stderr(double seconds, std::string last_words);
+
 /// A service as the verbs see it: answers that succeed. Everything else becomes CommandEnd, with
 /// the problems that the service named on stderr, one per line.
 class ServiceClient {

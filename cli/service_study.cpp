@@ -19,16 +19,6 @@ using Json = nlohmann::ordered_json;
 constexpr double kRetry = 600.0;  // s
 constexpr std::chrono::seconds kLook{2};
 
-Patience patience_of(const std::string& last_words) {
-  Patience patience;
-  patience.seconds = kRetry;
-  patience.say = [](const std::string& line) {
-    std::fputs(fmt::format("sluice: {}\n", line).c_str(), stderr);
-  };
-  patience.last_words = last_words;
-  return patience;
-}
-
 void print_result(ServiceClient& service, const ServiceStudy& options, const std::string& id) {
   const HttpReply reply = service.get(study_target(id, options.json ? "" : "?format=markdown"));
   print_body(reply);
@@ -48,8 +38,8 @@ std::string end_text(const Json& run) {
 void watch(ServiceClient& service, const std::string& id) {
   HttpRequest request;
   request.target = study_target(id);
-  const Patience patience =
-      patience_of("the study goes on where its service is; watch it again with --watch");
+  const Patience patience = patience_on_stderr(
+      kRetry, "the study goes on where its service is; watch it again with --watch");
   std::map<std::string, std::string> known;
   while (true) {
     const Json study = service.object_of(service.ask_patiently(request, patience));
@@ -99,9 +89,10 @@ void submit_study(const ServiceStudy& options, std::string_view document,
   request.body = document;
   const HttpReply reply = service.ask_patiently(
       request,
-      patience_of(fmt::format("submit it again with --idempotency-key {}, which makes no second "
-                              "study",
-                              key)),
+      patience_on_stderr(
+          kRetry,
+          fmt::format("submit it again with --idempotency-key {}, which makes no second study",
+                      key)),
       subject);
   const Json study = service.object_of(reply);
   const std::string id = text_at(study, "id");

@@ -99,13 +99,9 @@ void submit(const SubmitArguments& arguments) {
   const std::string key = arguments.key.empty() ? new_key() : arguments.key;
   const HttpRequest request = request_of(arguments, key);
   const std::string subject = arguments.scene == "-" ? "stdin" : arguments.scene;
-  Patience patience;
-  patience.seconds = arguments.watching.retry;
-  patience.say = [](const std::string& line) {
-    std::fputs(fmt::format("sluice: {}\n", line).c_str(), stderr);
-  };
-  patience.last_words =
-      fmt::format("submit it again with --idempotency-key {}, which makes no second job", key);
+  const Patience patience = patience_on_stderr(
+      arguments.watching.retry,
+      fmt::format("submit it again with --idempotency-key {}, which makes no second job", key));
   const HttpReply reply = service.ask_patiently(request, patience, subject);
   const Json answer = service.object_of(reply);
   if (arguments.json) {

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
+#include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
-#include "engine/scene/parse.hpp"
 #include "engine/scene/stability.hpp"
-#include "service/problem.hpp"
+#include "engine/store/digest.hpp"
 
 namespace sluice {
 namespace {
@@ -23,31 +24,13 @@ constexpr double kParticleStepsPerSecond = 15e6;
 /// does it in its own memory.
 constexpr std::uint64_t kTrialParticles = 100'000;
 
-Json errors_of(const std::vector<Problem>& problems) {
-  Json errors = Json::array();
-  for (const Problem& problem : problems) {
-    errors.push_back({{"pointer", problem.pointer}, {"detail", problem.message}});
-  }
-  return errors;
-}
-
-[[noreturn]] void refuse(const std::vector<Problem>& problems) {
-  const std::size_t count = problems.size();
-  const Problem& first = problems.front();
-  const std::string where = first.pointer.empty() ? "the whole scene" : first.pointer;
-  throw ApiError(ProblemType::invalid_scene,
-                 fmt::format("{} problem{}; first, {}: {}", count, count == 1 ? "" : "s", where,
-                             first.message),
-                 {{"errors", errors_of(problems)}});
+[[noreturn]] void refuse_scene(const std::vector<Problem>& problems) {
+  refuse(ProblemType::invalid_scene, "the whole scene", problems);
 }
 
 void check_overlap(const Scene& scene, const Estimate& estimate) {
   if (estimate.fluid_particles + estimate.wall_particles > kTrialParticles) return;
-  try {
-    (void)create_particles(scene);
-  } catch (const SceneError& error) {
-    refuse({error.problem()});
-  }
+  if (const auto problem = problem_when_filled(scene)) refuse_scene({*problem});
 }
 
 void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
@@ -65,12 +48,25 @@ void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
 
 Admitted admit_scene(std::string_view text, const ServiceLimits& limits) {
   ParseResult result = parse_scene(text);
-  if (!result.scene) refuse(result.problems);
+  if (!result.scene) refuse_scene(result.problems);
   Admitted admitted{*std::move(result.scene), {}};
   admitted.estimate = estimate(admitted.scene);
   check_limits(admitted.estimate, limits);
   check_overlap(admitted.scene, admitted.estimate);
   return admitted;
+}
+
+void refuse(ProblemType type, std::string_view whole, const std::vector<Problem>& problems) {
+  Json errors = Json::array();
+  for (const Problem& problem : problems) {
+    errors.push_back({{"pointer", problem.pointer}, {"detail", problem.message}});
+  }
+  const Problem& first = problems.front();
+  throw ApiError(
+      type,
+      fmt::format("{} problem{}; first, {}: {}", problems.size(), problems.size() == 1 ? "" : "s",
+                  first.pointer.empty() ? whole : first.pointer, first.message),
+      {{"errors", std::move(errors)}});
 }
 
 Json broken_limits(const Estimate& estimate, const ServiceLimits& limits) {
@@ -92,6 +88,13 @@ Json estimate_document(const Scene& scene, const Estimate& estimate, int threads
   document["seconds"] = particle_steps / (kParticleStepsPerSecond * std::max(threads, 1));
   document["stability"] = Json::parse(stability_json(predict_stability(scene)));
   return document;
+}
+
+void describe_scene(Job& job, const Scene& scene, const Estimate& estimate) {
+  job.name = scene.name;
+  job.end_time = scene.end_time;
+  job.scene_hash = scene_hash(identity_text(scene));
+  job.estimate = estimate_document(scene, estimate, job.threads).dump();
 }
 
 std::uint64_t memory_limit(const ServiceLimits& limits) {

@@ -3,9 +3,13 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
 #include "engine/scene/estimate.hpp"
+#include "engine/scene/parse.hpp"
 #include "engine/scene/scene.hpp"
+#include "service/job.hpp"
+#include "service/problem.hpp"
 #include "service/scheduler.hpp"
 
 namespace sluice {
@@ -20,6 +24,11 @@ struct Admitted {
 /// problem as {pointer, detail}, over_limit with every limit that it breaks.
 [[nodiscard]] Admitted admit_scene(std::string_view text, const ServiceLimits& limits);
 
+/// Throws ApiError of this type with every problem as {pointer, detail}; there is at least one.
+/// `whole` is what an empty pointer points to, such as "the whole scene".
+[[noreturn]] void refuse(ProblemType type, std::string_view whole,
+                         const std::vector<Problem>& problems);
+
 /// Every limit that a scene breaks, as {limit, value, allowed}; an empty array when none.
 [[nodiscard]] nlohmann::ordered_json broken_limits(const Estimate& estimate,
                                                    const ServiceLimits& limits);
@@ -28,6 +37,9 @@ struct Admitted {
 /// Courant number is from the largest stable one.
 [[nodiscard]] nlohmann::ordered_json estimate_document(const Scene& scene, const Estimate& estimate,
                                                        int threads);
+
+/// What a job has from its scene: name, end time, hash and estimate. Its threads must be set.
+void describe_scene(Job& job, const Scene& scene, const Estimate& estimate);
 
 /// Bytes of memory that one job may take: the limit, or three quarters of the machine's.
 [[nodiscard]] std::uint64_t memory_limit(const ServiceLimits& limits);

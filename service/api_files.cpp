@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kLargestReport = 1 << 20;  // bytes
-
 struct JobFileEntry {
   std::filesystem::path path;
   std::string_view kind;
@@ -88,7 +86,7 @@ Response report_file(const Job& job, const std::filesystem::path& path) {
 
 Json document_in(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return nullptr;
-  return stored_json(read_text(path, kLargestReport));
+  return stored_json(read_text(path, JobPaths::kLargestReport));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include "engine/scene/canonical.hpp"
 #include "engine/scene/plan.hpp"
-#include "engine/store/digest.hpp"
 #include "service/admission.hpp"
 #include "service/api_routes.hpp"
 #include "service/job_ids.hpp"
@@ -47,24 +45,19 @@ std::string hash_of(const Request& request, const SubmitOptions& options) {
       request, fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads));
 }
 
-Response accepted(const Job& job, bool repeated, const std::string& waiting) {
-  Response response = json_response(202, job_document(job, waiting));
-  response.headers.emplace_back("Location", fmt::format("/v1/jobs/{}", job.id));
-  if (repeated) response.headers.emplace_back("Idempotency-Replayed", "true");
-  return response;
+Response accepted(const ApiContext& context, const Job& job, bool repeated) {
+  return accepted_response(fmt::format("/v1/jobs/{}", job.id),
+                           job_document(job, context.scheduler.why_waiting(job)), repeated);
 }
 
 Job new_job(ApiContext& context, const Admitted& admitted, const SubmitOptions& options) {
   Job job;
   job.id = context.store.new_id();
-  job.name = admitted.scene.name;
   job.label = options.label;
   job.priority = options.priority;
   job.threads = options.threads;
   job.created_ms = unix_time_ms();
-  job.scene_hash = scene_hash(identity_text(admitted.scene));
-  job.end_time = admitted.scene.end_time;
-  job.estimate = estimate_document(admitted.scene, admitted.estimate, options.threads).dump();
+  describe_scene(job, admitted.scene, admitted.estimate);
   return job;
 }
 
@@ -80,7 +73,7 @@ Response make_job(ApiContext& context, const Request& request, const SubmitOptio
   const auto submitted = context.store.submit(job, options.key, hash, limits.queued_jobs);
   if (!submitted.repeated) folder.keep();
   context.scheduler.poke();
-  return accepted(submitted.job, submitted.repeated, context.scheduler.why_waiting(submitted.job));
+  return accepted(context, submitted.job, submitted.repeated);
 }
 
 Response show_plan(const ApiContext& context, const Request& request,
@@ -101,7 +94,7 @@ Response submit_job(ApiContext& context, const RouteRequest& request) {
 
   const std::scoped_lock one_at_a_time(context.keyed_submits);
   if (const auto known = context.store.find_by_key(options.key, hash_of(request.http, options))) {
-    return accepted(*known, true, context.scheduler.why_waiting(*known));
+    return accepted(context, *known, true);
   }
   return make_job(context, request.http, options);
 }

@@ -33,10 +33,8 @@ SubmitOptions read_options(const Request& request) {
 }
 
 Response accepted(const ApiContext& context, const StudyRecord& study, bool repeated) {
-  Response response = json_response(202, study_document(context, view_study(context, study)));
-  response.headers.emplace_back("Location", fmt::format("/v1/studies/{}", study.id));
-  if (repeated) response.headers.emplace_back("Idempotency-Replayed", "true");
-  return response;
+  return accepted_response(fmt::format("/v1/studies/{}", study.id),
+                           study_document(context, view_study(context, study)), repeated);
 }
 
 /// What every run and all together would take; nothing is changed.

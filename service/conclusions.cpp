@@ -1,9 +1,10 @@
 #include "service/conclusions.hpp"
-#include "service/service_log.hpp"
 
 #include <fmt/format.h>
 
 #include <utility>
+
+#include "service/service_log.hpp"
 
 namespace sluice {
 namespace {

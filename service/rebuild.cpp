@@ -9,10 +9,8 @@
 #include <system_error>
 #include <vector>
 
-#include "engine/scene/canonical.hpp"
 #include "engine/scene/estimate.hpp"
 #include "engine/scene/parse.hpp"
-#include "engine/store/digest.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/new_folder.hpp"
 #include "service/admission.hpp"
@@ -100,14 +98,6 @@ Scene read_scene(const JobPaths& paths) {
   return *result.scene;
 }
 
-/// Needs the job's threads.
-void describe_scene(Job& job, const Scene& scene) {
-  job.estimate = estimate_document(scene, estimate(scene), job.threads).dump();
-  job.name = scene.name;
-  job.end_time = scene.end_time;
-  job.scene_hash = scene_hash(identity_text(scene));
-}
-
 void describe_file(Job& job, const JobFile& file) {
   job.label = file.label;
   job.priority = file.priority;
@@ -181,7 +171,7 @@ bool adopt_folder(JobStore& store, const fs::path& folder, const RebuildReport& 
   const Scene scene = read_scene(paths);
   const std::optional<JobFile> file = read_file(paths, report);
   if (file) describe_file(job, *file);
-  describe_scene(job, scene);
+  describe_scene(job, scene, estimate(scene));
   decide_state(job, paths, file, read_ending(paths, report));
   job.updated_ms = std::max(job.created_ms, job.ended_ms);
   return store.adopt(job, file ? file->key : "", file ? file->body_hash : "");

@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kDeletedPrefix = ".deleted-";
 constexpr std::size_t kPage = 500;
-constexpr std::uint64_t kLargestReport = 1 << 20;  // bytes
 
 /// A study keeps what its run came to.
 void keep_for_study(const JobStore& store, const fs::path& data, const std::string& id) {
@@ -26,7 +25,7 @@ void keep_for_study(const JobStore& store, const fs::path& data, const std::stri
   const bool reported = fs::exists(paths.report(), ignored);
   keep_run(data, job->label, job->name,
            {std::string(to_string(job->state)), job->reason,
-            reported ? read_text(paths.report(), kLargestReport) : ""});
+            reported ? read_text(paths.report(), JobPaths::kLargestReport) : ""});
 }
 
 /// False when the job was deleted or extended by a request at the same time.

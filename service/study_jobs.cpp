@@ -5,9 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
-#include "engine/store/digest.hpp"
 #include "service/admission.hpp"
 #include "service/job_ids.hpp"
 #include "service/problem.hpp"
@@ -22,17 +20,8 @@ using Json = nlohmann::ordered_json;
 /// Regions that overlap show only when they are filled. What goes beyond is left to the workers.
 constexpr std::uint64_t kTrialParticles = 200'000;
 
-[[noreturn]] void refuse(const std::vector<Problem>& problems) {
-  Json errors = Json::array();
-  for (const Problem& problem : problems) {
-    errors.push_back({{"pointer", problem.pointer}, {"detail", problem.message}});
-  }
-  const Problem& first = problems.front();
-  throw ApiError(
-      ProblemType::invalid_study,
-      fmt::format("{} problem{}; first, {}: {}", problems.size(), problems.size() == 1 ? "" : "s",
-                  first.pointer.empty() ? "the whole study" : first.pointer, first.message),
-      {{"errors", std::move(errors)}});
+[[noreturn]] void refuse_study(const std::vector<Problem>& problems) {
+  refuse(ProblemType::invalid_study, "the whole study", problems);
 }
 
 void check_limits(const StudyPlan& plan, const ServiceLimits& limits) {
@@ -68,11 +57,9 @@ void check_overlap(const StudyPlan& plan) {
     const Estimate size = estimate(run.scene);
     particles += size.fluid_particles + size.wall_particles;
     if (particles > kTrialParticles) return;
-    try {
-      (void)create_particles(run.scene);
-    } catch (const SceneError& error) {
-      const Problem& problem = error.problem();
-      refuse({{"", fmt::format("run {}: {}: {}", run.name, problem.pointer, problem.message)}});
+    if (const auto problem = problem_when_filled(run.scene)) {
+      refuse_study(
+          {{"", fmt::format("run {}: {}: {}", run.name, problem->pointer, problem->message)}});
     }
   }
 }
@@ -80,14 +67,11 @@ void check_overlap(const StudyPlan& plan) {
 Job job_of(const StudyRecord& study, const StudyRun& run, int threads, std::string id) {
   Job job;
   job.id = std::move(id);
-  job.name = run.name;
   job.label = study.id;
   job.priority = study.priority;
   job.threads = threads;
   job.created_ms = unix_time_ms();
-  job.scene_hash = scene_hash(identity_text(run.scene));
-  job.end_time = run.scene.end_time;
-  job.estimate = estimate_document(run.scene, estimate(run.scene), threads).dump();
+  describe_scene(job, run.scene, estimate(run.scene));  // whose name is the run's
   return job;
 }
 
@@ -95,7 +79,7 @@ Job job_of(const StudyRecord& study, const StudyRun& run, int threads, std::stri
 
 StudyPlan admit_study(std::string_view text, const ServiceLimits& limits) {
   StudyPlan plan = plan_study(text, nullptr, nullptr, limits.runs_per_study);
-  if (!plan.problems.empty()) refuse(plan.problems);
+  if (!plan.problems.empty()) refuse_study(plan.problems);
   check_limits(plan, limits);
   check_overlap(plan);
   return plan;

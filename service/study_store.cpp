@@ -1,15 +1,14 @@
 #include "service/study_store.hpp"
 
-#include <fmt/format.h>
-
+#include <array>
 #include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "engine/scene/parse.hpp"
 #include "engine/store/errors.hpp"
+#include "engine/store/new_folder.hpp"
 #include "engine/store/publish.hpp"
 #include "service/job_ids.hpp"
 
@@ -32,9 +31,7 @@ void make_folder(const fs::path& path, FileSystem& system) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!error && system.sync_folder(path.parent_path()) == 0) return;
-  const int code = error ? error.value() : errno;
-  throw StorageError(code == ENOSPC ? StorageFault::disk_full : StorageFault::unwritable,
-                     fmt::format("cannot make {}: {}", path.string(), std::strerror(code)));
+  throw system_error("cannot make the folder", path, error ? error.value() : errno);
 }
 
 std::string text_of(const json& object) {
@@ -82,6 +79,7 @@ std::optional<StudyRecord> read_record(const fs::path& folder) {
 StudyStore::StudyStore(const fs::path& data, FileSystem& system)
     : root_(studies_of(data)), system_(&system) {
   make_folder(root_, system);
+  remove_unfinished_folders(root_);
   read_all();
 }
 
@@ -107,16 +105,11 @@ void StudyStore::write(const StudyRecord& record) const {
 
 void StudyStore::add(const StudyRecord& record, std::string_view document) {
   const fs::path place = folder(record.id);
-  try {
-    make_folder(place, *system_);
-    publish_text(document_in(place), document, *system_);
-    // Last: with it there is a study.
-    write(record);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(place, ignored);
-    throw;
-  }
+  const std::string study = document_in(place).filename().string();
+  const std::string submission = submission_in(place).filename().string();
+  const std::string text = text_of(to_json(record));
+  publish_folder(place, std::array<FirstFile, 2>{{{study, document}, {submission, text}}}, {},
+                 *system_);
   const std::scoped_lock lock(mutex_);
   records_[record.id] = record;
 }
@@ -135,8 +128,7 @@ void StudyStore::remove(const std::string& id) {
   std::error_code error;
   fs::remove(submission_in(folder(id)), error);
   if (error) {
-    throw StorageError(StorageFault::unwritable,
-                       fmt::format("cannot remove study {}: {}", id, error.message()));
+    throw system_error("cannot remove", submission_in(folder(id)), error.value());
   }
   fs::remove_all(folder(id), error);
   const std::scoped_lock lock(mutex_);

@@ -42,8 +42,8 @@ struct KeptRun {
 /// StorageError: disk_full, unwritable, io, corrupt.
 class StudyStore {
  public:
-  /// Reads what is there; a folder without a whole submission.json is what a cut-short submission
-  /// left, and is removed.
+  /// Reads what is there; what a submission cut short left is removed, and so is a folder without
+  /// submission.json, which a removal cut short left.
   explicit StudyStore(const std::filesystem::path& data, FileSystem& system = FileSystem::real());
 
   void add(const StudyRecord& record, std::string_view document);

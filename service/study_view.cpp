@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kLargestReport = 1 << 20;  // bytes
-
 StudyRow unfinished(RunState state, const std::string& reason) {
   StudyRow row;
   row.state = state;
@@ -44,7 +42,7 @@ StudyRow row_of_kept(const StudyStore& studies, const StudyRecord& record, const
 
 std::string report_text(const ApiContext& context, const std::string& id) {
   try {
-    return read_text(context.paths(id).report(), kLargestReport);
+    return read_text(context.paths(id).report(), JobPaths::kLargestReport);
   } catch (const StorageError&) {
     return {};
   }

@@ -50,27 +50,25 @@ std::string request_hash(const Request& request, std::string_view rest) {
   return hash.finish();
 }
 
+Response accepted_response(std::string location, const Json& document, bool repeated) {
+  Response response = json_response(202, document);
+  response.headers.emplace_back("Location", std::move(location));
+  if (repeated) response.headers.emplace_back("Idempotency-Replayed", "true");
+  return response;
+}
+
 NewFolder::NewFolder(const JobPaths& paths, std::string_view scene, const JobFile& file)
     : root_(paths.root()) {
-  try {
-    publish_job_folder(root_, scene,
-                       {{job_file_path(root_).filename().string(), job_file_text(file)}});
-  } catch (...) {
-    remove();
-    throw;
-  }
+  publish_job_folder(root_, scene,
+                     {{job_file_path(root_).filename().string(), job_file_text(file)}});
 }
 
 NewFolder::NewFolder(NewFolder&& other) noexcept
     : root_(std::move(other.root_)), kept_(std::exchange(other.kept_, true)) {}
 
 NewFolder::~NewFolder() {
-  if (!kept_) remove();
-}
-
-void NewFolder::remove() const {
   std::error_code ignored;
-  std::filesystem::remove_all(root_, ignored);
+  if (!kept_) std::filesystem::remove_all(root_, ignored);
 }
 
 }  // namespace sluice

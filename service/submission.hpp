@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ void require_json(const Request& request, std::string_view what);
 /// Tells requests with one key apart: SHA-256 of the body and of all else that makes a difference.
 [[nodiscard]] std::string request_hash(const Request& request, std::string_view rest);
 
+/// 202 with what was made and where it is. `repeated`: by an earlier request with the same key.
+[[nodiscard]] Response accepted_response(std::string location,
+                                         const nlohmann::ordered_json& document, bool repeated);
+
 /// A job's folder that goes away again unless the job gets its row.
 class NewFolder {
  public:
@@ -31,8 +36,6 @@ class NewFolder {
   void keep() { kept_ = true; }
 
  private:
-  void remove() const;
-
   std::filesystem::path root_;
   bool kept_ = false;
 };

@@ -134,4 +134,13 @@ InitialParticles create_particles(const Scene& scene) {
   return result;
 }
 
+std::optional<Problem> problem_when_filled(const Scene& scene) {
+  try {
+    (void)create_particles(scene);
+    return std::nullopt;
+  } catch (const SceneError& error) {
+    return error.problem();
+  }
+}
+
 }  // namespace sluice

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/scene/parse.hpp"
@@ -27,5 +28,9 @@ struct InitialParticles {
 /// Throws SceneError when two regions put particles closer than dx/2 in both directions to each
 /// other, or when no fluid is left.
 [[nodiscard]] InitialParticles create_particles(const Scene& scene);
+
+/// What create_particles would throw: regions that overlap, or a scene without fluid, show only
+/// when it is filled. Takes as long as filling it.
+[[nodiscard]] std::optional<Problem> problem_when_filled(const Scene& scene);
 
 }  // namespace sluice

@@ -26,6 +26,7 @@ class JobPaths {
   [[nodiscard]] std::filesystem::path series() const { return root_ / "series.h5"; }
   [[nodiscard]] std::filesystem::path outcome() const { return root_ / "outcome.json"; }
   [[nodiscard]] std::filesystem::path report() const { return root_ / "report.json"; }
+  static constexpr std::uint64_t kLargestReport = 1 << 20;  ///< bytes; no report.json has more
   [[nodiscard]] std::filesystem::path report_markdown() const { return root_ / "report.md"; }
   [[nodiscard]] std::filesystem::path report_html() const { return root_ / "report.html"; }
   [[nodiscard]] std::filesystem::path frames() const { return root_ / "frames"; }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <span>
 #include <string>
@@ -76,8 +77,9 @@ class UnfinishedFolder {
     if (system_.rename(path_, target_) != 0) {
       throw system_error("cannot put the new folder in place", target_, errno);
     }
-    path_.clear();
+    path_ = target_;  // removed after all, should the disk refuse its name
     sync_folder(target_.parent_path());
+    path_.clear();
   }
 
  private:
@@ -119,19 +121,27 @@ bool is_unfinished(const fs::directory_entry& entry) {
 
 }  // namespace
 
-void publish_job_folder(const fs::path& target, std::string_view scene_text,
-                        std::initializer_list<FirstFile> more, FileSystem& system) {
+void publish_folder(const fs::path& target, std::span<const FirstFile> files,
+                    std::span<const std::string_view> folders, FileSystem& system) {
   if (std::error_code ignored; fs::exists(fs::symlink_status(target, ignored))) {
     throw StorageError(StorageFault::already_exists,
                        fmt::format("{}: is there already; choose another folder", target.string()));
   }
   UnfinishedFolder folder(target, system);
-  const JobPaths paths(folder.path());
-  make_folder(paths.frames());
-  folder.write(paths.scene().filename().string(), scene_text);
-  for (const FirstFile& file : more) folder.write(file.name, file.text);
+  for (const std::string_view name : folders) make_folder(folder.path() / name);
+  for (const FirstFile& file : files) folder.write(file.name, file.text);
   folder.sync();
   folder.move_to_place();
+}
+
+void publish_job_folder(const fs::path& target, std::string_view scene_text,
+                        std::initializer_list<FirstFile> more, FileSystem& system) {
+  const JobPaths paths(target);
+  const std::string scene = paths.scene().filename().string();
+  const std::string frames = paths.frames().filename().string();
+  std::vector<FirstFile> files{{scene, scene_text}};
+  files.insert(files.end(), more.begin(), more.end());
+  publish_folder(target, files, std::array<std::string_view, 1>{frames}, system);
 }
 
 std::size_t remove_unfinished_folders(const fs::path& parent) {

@@ -67,10 +67,8 @@ CaseRun StabilityBench::run(const Json& scene, StabilityCheck stability, const P
     return run;
   }
   run.scene = *std::move(parsed.scene);
-  try {
-    (void)create_particles(run.scene);
-  } catch (const SceneError& error) {
-    run.problems.push_back(error.problem());
+  if (const auto problem = problem_when_filled(run.scene)) {
+    run.problems.push_back(*problem);
     return run;
   }
   const std::string name = fmt::format("{:03}-{}", ++runs_, run.scene.name);

@@ -362,11 +362,14 @@ TEST(ApiStudies, TheNextStartMakesTheJobsThatACrashLeftUnmadeAndOnlyThose) {
 
 TEST(ApiStudies, WhatACutShortSubmissionLeftIsRemovedAtTheNextStart) {
   DataFolder data;
-  const fs::path half = data.path() / "studies" / ("s" + std::string(20, '0'));
-  fs::create_directories(half);
-  write_file(half / "study.json", ladder().dump());
+  const std::string id = "s" + std::string(20, '0');
+  const fs::path folder = data.path() / "studies";
+  for (const fs::path& half : {folder / id, folder / ("." + id + ".new")}) {
+    fs::create_directories(half);
+    write_file(half / "study.json", ladder().dump());
+  }
   const StudyStore studies(data.path());
-  EXPECT_FALSE(fs::exists(half));
+  EXPECT_TRUE(fs::is_empty(folder));
   EXPECT_TRUE(studies.list("", 10).empty());
 }
 

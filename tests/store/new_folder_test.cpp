@@ -48,6 +48,14 @@ TEST(NewFolder, IsNotThereWhicheverStepFails) {
   }
 }
 
+TEST(NewFolder, IsNotThereWhenItsNameCannotBeBroughtToTheDisk) {
+  int after = 1;  // The first sync of a folder comes before the rename, the second after it
+  const TemporaryFolder folder;
+  FaultyFileSystem system(Step::sync_folder, [&after] { return after-- > 0 ? 0 : EIO; });
+  expect_fault(StorageFault::io, [&] { publish_in(folder, system); });
+  EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
 TEST(NewFolder, IsNotThereWhenAFileReadsBackWrong) {
   const TemporaryFolder folder;
   LyingFileSystem system;
