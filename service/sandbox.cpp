@@ -135,7 +135,7 @@ FileDescriptor make_rules(const fs::path& folder, int program) {
   }
   const FileDescriptor work(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (work.get() < 0) {
-    throw std::system_error(errno, std::generic_category(), "cannot open " + folder.string());
+    throw std::system_error(errno, std::generic_category(), "cannot open the job's folder");
   }
   allow(ruleset.get(), work.get(), kWork & attributes.file_system);
   allow_program(ruleset.get(), program, attributes.file_system);

@@ -26,8 +26,8 @@ WorkerCommand worker_command(const std::filesystem::path& program,
   WorkerCommand command;
   command.program = program;
   command.folder = folder;
-  command.arguments = {"run",        folder.string(), "--threads", std::to_string(job.threads),
-                       "--progress", "json"};
+  // By its working directory: what it says is shown to users, who need not know where that is.
+  command.arguments = {"run", ".", "--threads", std::to_string(job.threads), "--progress", "json"};
   command.token = job.token;
   if (!kSanitized) {
     command.address_space = memory_limit(limits) + kFixedAddresses +

@@ -46,13 +46,13 @@ TEST_F(SchedulerThread, CompletesAJobWithItsOutcome) {
   EXPECT_EQ(history(store_, job.id), "submitted claimed worker_started completed");
 }
 
-TEST_F(SchedulerThread, GivesTheWorkerFolderThreadsAndTheFormOfItsLines) {
+TEST_F(SchedulerThread, StartsTheWorkerInItsFolderWithThreadsAndTheFormOfItsLines) {
   limits_.cores = 3;
   const Job job = add_real_job(store_, data_, 0.1, 0, 3);
-  start({R"(echo "$@" > "$2/arguments")", kComplete});
+  start({R"(echo "$PWD: $@" > "$2/arguments")", kComplete});
   wait_for(store_, job.id, JobState::completed);
   EXPECT_EQ(read_file(data_.job(job.id) / "arguments"),
-            "run " + data_.job(job.id).string() + " --threads 3 --progress json\n");
+            data_.job(job.id).string() + ": run . --threads 3 --progress json\n");
 }
 
 TEST_F(SchedulerThread, EndsAJobWhoseCrashRepeats) {

@@ -18,7 +18,7 @@ namespace {
 
 // Each run leaves "+ID" and "-ID" in DATA/order: when it began and when it ended.
 constexpr std::string_view kNoteOrder =
-    R"(order="$2/../../order"; id=$(basename "$2")
+    R"(order="$2/../../order"; id=$(basename "$PWD")
 echo "+$id" >> "$order"; sleep 0.05; echo "-$id" >> "$order"
 echo '{"state":"completed","exit_code":0,"reason":"","end_time":0.1}' > "$2/outcome.json")";
 

@@ -14,15 +14,15 @@ namespace {
 // Runs until DATA/NAME exists, where NAME is the job's id, or until it is told to stop. It answers
 // SIGUSR1 with the event "checkpoint". Not bash, which cannot take a signal that was ignored when
 // it began.
-constexpr std::string_view kUntilReleased = R"(exec perl -e '$| = 1;
-($folder) = @ARGV; ($data, $id) = $folder =~ m{(.*)/jobs/([^/]+)$};
+constexpr std::string_view kUntilReleased = R"(exec perl -MCwd -e '$| = 1;
+($data, $id) = getcwd() =~ m{(.*)/jobs/([^/]+)$};
 $SIG{TERM} = sub { exit 85 };
 $SIG{USR1} = sub { print "{\"event\":\"checkpoint\",\"step\":5}\n" };
 print "{\"event\":\"started\",\"step\":0}\n{\"event\":\"progress\",\"step\":5}\n";
 select(undef, undef, undef, 0.02) until -e "$data/$id";
-open(OUT, ">", "$folder/outcome.json");
+open(OUT, ">", "outcome.json");
 print OUT "{\"state\":\"completed\",\"exit_code\":0,\"reason\":\"\",\"end_time\":0.1}";
-' "$2")";
+')";
 
 /// A machine whose time and disk are what the test says.
 class SchedulerSensesThread : public ::testing::Test {

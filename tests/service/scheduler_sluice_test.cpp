@@ -44,6 +44,18 @@ TEST_F(SchedulerSluiceThread, RunsAScene) {
   EXPECT_GE(count_events(store_, job.id, "started"), 1);
 }
 
+TEST_F(SchedulerSluiceThread, ItsWorkersNeverNameThePlaceOfTheDataFolder) {
+  const Job job = add_real_job(store_, data_);
+  const JobPaths paths(data_.job(job.id));
+  write_file(paths.checkpoint(7), "no checkpoint");
+  start();
+  const Job failed = wait_for(store_, job.id, JobState::failed);
+  EXPECT_NE(failed.reason.find("checkpoint"), std::string::npos) << failed.reason;
+  std::string said = failed.reason + failed.outcome + read_file(paths.log());
+  for (const JobEvent& event : store_.events(job.id, 0, 10000)) said += event.detail;
+  EXPECT_EQ(said.find(data_.path().string()), std::string::npos) << said;
+}
+
 TEST_F(SchedulerSluiceThread, ConfinesItsWorkers) {
   const Job job = add_endless_job(store_, data_);
   start();

@@ -20,7 +20,8 @@ namespace sluice::test {
 [[nodiscard]] std::string endless_scene();
 
 /// A program for the scheduler to start in place of `sluice`: a bash script that gets the arguments
-/// of a worker, so that "$2" is the job's folder. FOLDER/n holds how many times it was started, and
+/// of a worker, so that "$2" is the job's folder, where it starts. FOLDER/n holds how many times it
+/// was started, and
 /// "$n" is that number.
 [[nodiscard]] std::filesystem::path write_worker(const DataFolder& data, std::string_view script);
 /// Lines for such a script: what a worker says when it begins, and as outcome.json when it is done.

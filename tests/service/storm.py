@@ -55,17 +55,18 @@ def undisturbed(program, folder):
 
 def workers(data):
     """{process id: job id} of all workers of this data folder."""
-    wanted = str(data / "jobs").encode()
+    wanted = str(data.resolve() / "jobs")
     found = {}
     for entry in pathlib.Path("/proc").iterdir():
         if not entry.name.isdigit():
             continue
         try:
             arguments = (entry / "cmdline").read_bytes().split(b"\0")
+            folder = (entry / "cwd").readlink()
         except OSError:
             continue
-        if len(arguments) > 2 and arguments[1] == b"run" and arguments[2].startswith(wanted):
-            found[int(entry.name)] = pathlib.Path(arguments[2].decode()).name
+        if arguments[1:3] == [b"run", b"."] and str(folder.parent) == wanted:
+            found[int(entry.name)] = folder.name
     return found
 
 
