@@ -20,8 +20,7 @@ constexpr std::string_view kSmallerStep =
 
 constexpr std::string_view kSlowerFlow =
     "raise material.sound_speed where the flow itself is that fast, else lower numerics.courant, "
-    "or "
-    "use the kick_drift_kick integrator with artificial viscosity and density diffusion";
+    "or use the kick_drift_kick integrator with artificial viscosity and density diffusion";
 
 Finding not_finite(const GuardLimits&, const StepFacts& facts) {
   const bool finite = facts.extremes.finite && std::isfinite(facts.time_step);

@@ -8,32 +8,57 @@
 #include <span>
 #include <utility>
 
+#include "engine/sph/chunk_sums.hpp"
+#include "engine/sph/crowding.hpp"
+#include "engine/sph/dummy_particles.hpp"
 #include "engine/sph/kernel.hpp"
+#include "engine/sph/tracks.hpp"
 
 namespace sluice {
 namespace {
 
-// How long pair lists serve changes no bit of a result, for what is beyond the support adds zero.
-// Longer lists serve longer and hold more pairs that are none.
-constexpr double kListLifetime = 15.0;   // h/c
-constexpr double kLeastLeeway = 0.05;    // h
-constexpr double kLeewayPerSpeed = 0.2;  // of the distance at present speed in that time
-constexpr double kListSlack = 1e-3;      // lists are longer by more than any rounding
+constexpr double kListSlack = 1e-3;  // lists are longer by more than any rounding
 
 // The order in memory is state: when it is renewed is a function of the step alone.
 constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
-constexpr std::uint32_t kManyNeighbours = 200;
-
-/// A coordinate in h that no kernel reaches, for a dummy particle that is none.
-double far_from_all(std::size_t slot) { return -1e8 * static_cast<double>(slot + 1); }
 
 /// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source, which
 /// lifts still water for ever. Only where the hydrostatic part is diffused as well must the walls
 /// hold against it.
 bool diffuses_with_walls(const DensityDiffusion& term) {
   return term.kind == DiffusionKind::molteni_colagrossi;
+}
+
+/// Whether what is diffused is a field of its own: Molteni and Colagrossi diffuse the excess
+/// itself.
+bool keeps_diffused(const Method& method) {
+  return method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas;
+}
+
+/// Lengths in m.
+template <typename T>
+TermConstants<T> term_constants(const Method& m, double tile_size) {
+  TermConstants<T> k;
+  k.tile_size = static_cast<T>(tile_size / m.smoothing_length);
+  if (m.diffusion) {
+    k.two_delta = static_cast<T>(2.0 * m.diffusion->delta);
+    k.two_delta_wall = diffuses_with_walls(*m.diffusion) ? k.two_delta : T{0};
+  }
+  if (m.viscosity) {
+    k.viscosity_alpha = static_cast<T>(m.viscosity->alpha);
+    k.viscosity_epsilon = static_cast<T>(m.viscosity->epsilon);
+  }
+  if (m.wall_friction) {
+    k.friction_alpha = static_cast<T>(m.wall_friction->alpha);
+    k.friction_epsilon = static_cast<T>(m.wall_friction->epsilon);
+  }
+  k.two_nu = static_cast<T>(m.scaled_two_nu());
+  const Vec gravity = m.gravity * m.smoothing_length / (m.sound_speed * m.sound_speed);
+  k.gravity_x = static_cast<T>(gravity.x());
+  k.gravity_y = static_cast<T>(gravity.y());
+  return k;
 }
 
 /// Adds the wall time of its life to one pass.
@@ -64,7 +89,6 @@ class Engine final : public Solver::Impl {
 
  private:
   // Start.
-  void place_walls(const std::vector<Vec>& walls);
   void load(const SolverState& state);
   void start_kick_drift_kick();
 
@@ -74,9 +98,7 @@ class Engine final : public Solver::Impl {
   void reorder(const Layout& next);
   void bind();
   void make_lists();
-  void place_sums();
-  [[nodiscard]] std::uint32_t most_neighbours();
-  [[nodiscard]] std::uint32_t count_most_neighbours() const;
+  void count_neighbours();
 
   // Passes.
   void step_leap_frog();
@@ -86,7 +108,6 @@ class Engine final : public Solver::Impl {
   void keep_lists(const Motion& seen);
   [[nodiscard]] bool order_due() const;
   void sum_wall_pressure();
-  void lift_wall();
   void reinitialise();
   void sum_pairs(typename Sweeps<T>::Sweep loop);
   void run_sweep(typename Sweeps<T>::Sweep loop);
@@ -100,12 +121,7 @@ class Engine final : public Solver::Impl {
 
   // Views.
   [[nodiscard]] ParticleSpan span(std::size_t chunk);
-  [[nodiscard]] static PairView<T> view(const PairArrays<T>& arrays);
-  [[nodiscard]] TracksView<T> tracks() const;
-  template <typename U>
-  [[nodiscard]] static Leeway<U> leeway();
   [[nodiscard]] PairScales scales() const;
-  void resize_pairs(PairArrays<T>& arrays, std::size_t slots) const;
 
   /// Calls body(chunk, seen) for the span of every chunk and merges what each saw.
   template <class Body>
@@ -123,23 +139,12 @@ class Engine final : public Solver::Impl {
   PairArrays<T> pairs_;
   PairScales scales_;
   Tracks<T> tracks_;
-  double elapsed_ = 0.0;                     // since the lists were made, h/c
   std::vector<double> origin_x_, origin_y_;  // per cluster
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
-  std::vector<AlignedArray<T>> chunk_sums_;  // of fluid_to_fluid_, per chunk
-  std::vector<const T*> sums_of_chunks_;
-  std::vector<std::vector<Arrival>> arrivals_;  // per chunk, by the chunk they come from
-  bool outside_ = false;                        // a particle is to be retired
+  ChunkSums<T> sums_;     // of fluid_to_fluid_
+  bool outside_ = false;  // a particle is to be retired
 
-  Layout wall_layout_;
-  ClusterBounds wall_bounds_;
-  PairArrays<T> walls_;
-  AlignedArray<T> wall_excess_;
-  struct LiftedParticle {
-    Vec place;
-    std::size_t slot;
-  };
-  std::vector<LiftedParticle> lifted_;  // dummy particles of the lifted wall that still stand
+  DummyParticles<T> walls_;
 };
 
 template <typename T>
@@ -147,103 +152,15 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
                   const Execution& exec)
     : grid_(m.domain, m.spacing, m.smoothing_length, state.particles.size() + walls.size()),
       sweeps_(select_sweeps<T>(m, exec.simd_target)),
-      team_(exec.threads) {
+      team_(exec.threads),
+      constants_(term_constants<T>(m, grid_.tile_size())),
+      walls_(team_, grid_, m, walls) {
   method = m;
   execution = exec;
   wall_count = walls.size();
   simd_target = sweeps_.target;
 
-  constants_.tile_size = static_cast<T>(grid_.tile_size() / m.smoothing_length);
-  if (m.diffusion) {
-    constants_.two_delta = static_cast<T>(2.0 * m.diffusion->delta);
-    constants_.two_delta_wall = diffuses_with_walls(*m.diffusion) ? constants_.two_delta : T{0};
-  }
-  if (m.viscosity) {
-    constants_.viscosity_alpha = static_cast<T>(m.viscosity->alpha);
-    constants_.viscosity_epsilon = static_cast<T>(m.viscosity->epsilon);
-  }
-  if (m.wall_friction) {
-    constants_.friction_alpha = static_cast<T>(m.wall_friction->alpha);
-    constants_.friction_epsilon = static_cast<T>(m.wall_friction->epsilon);
-  }
-  constants_.two_nu = static_cast<T>(m.scaled_two_nu());
-  const Vec gravity = m.gravity * m.smoothing_length / (m.sound_speed * m.sound_speed);
-  constants_.gravity_x = static_cast<T>(gravity.x());
-  constants_.gravity_y = static_cast<T>(gravity.y());
-
-  if (wall_count > 0) place_walls(walls);
   load(state);
-}
-
-template <typename T>
-void Engine<T>::resize_pairs(PairArrays<T>& arrays, std::size_t slots) const {
-  for (auto* a : {&arrays.x, &arrays.y, &arrays.u, &arrays.v, &arrays.excess, &arrays.volume,
-                  &arrays.stress}) {
-    a->resize(slots);
-  }
-}
-
-template <typename T>
-PairView<T> Engine<T>::view(const PairArrays<T>& a) {
-  const T* diffused = a.diffused.size() > 0 ? a.diffused.data() : a.excess.data();
-  return {a.x.data(),      a.y.data(),      a.u.data(), a.v.data(),
-          a.excess.data(), a.volume.data(), diffused,   a.stress.data()};
-}
-
-template <typename T>
-TracksView<T> Engine<T>::tracks() const {
-  return {tracks_.x.data(), tracks_.y.data(), tracks_.u.data(), tracks_.v.data()};
-}
-
-template <typename T>
-template <typename U>
-Leeway<U> Engine<T>::leeway() {
-  constexpr double kPerSpeed = kLeewayPerSpeed * kListLifetime;
-  return {static_cast<U>(kListLifetime), static_cast<U>(kLeastLeeway), static_cast<U>(kPerSpeed)};
-}
-
-template <typename T>
-void Engine<T>::place_walls(const std::vector<Vec>& walls) {
-  const std::size_t count = walls.size();
-  std::vector<double> x(count);
-  std::vector<double> y(count);
-  std::vector<double> id(count);
-  std::vector<std::uint32_t> all(count);
-  std::iota(all.begin(), all.end(), 0U);
-  for (std::size_t i = 0; i < count; ++i) {
-    x[i] = walls[i].x();
-    y[i] = walls[i].y();
-    id[i] = static_cast<double>(i);
-  }
-  wall_layout_ = sort_into_clusters(team_, grid_, x, y, id, all);
-  const std::size_t slots = wall_layout_.slots();
-  resize_pairs(walls_, slots);
-  wall_excess_.resize(slots);
-  const double h = method.smoothing_length;
-  std::vector<double> slot_x(slots, 0.0);
-  std::vector<double> slot_y(slots, 0.0);
-  std::vector<double> slot_id(slots, -1.0);
-  for (std::size_t s = 0; s < slots; ++s) {
-    const std::uint32_t i = wall_layout_.source[s];
-    if (i == Layout::kEmpty) continue;
-    slot_x[s] = x[i];
-    slot_y[s] = y[i];
-    slot_id[s] = id[i];
-    if (method.lifted_wall && method.lifted_wall->place.contains(walls[i])) {
-      lifted_.push_back({walls[i], s});
-    }
-  }
-  wall_bounds_.assign_tiles(team_, grid_, wall_layout_, slot_x.data(), slot_y.data(),
-                            slot_id.data());
-  wall_bounds_.assign_boxes(team_, wall_layout_, method, leeway<double>(),
-                            {slot_x.data(), slot_y.data(), nullptr, nullptr, slot_id.data()});
-  for (std::size_t s = 0; s < slots; ++s) {
-    const bool used = slot_id[s] >= 0.0;
-    const Vec origin = grid_.tile_center(wall_bounds_.tile[s / kCluster]);
-    walls_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : far_from_all(s));
-    walls_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : far_from_all(s));
-    walls_.volume[s] = T{1};
-  }
 }
 
 template <typename T>
@@ -274,10 +191,10 @@ void Engine<T>::load(const SolverState& state) {
   particles = std::move(source);
   reorder(
       sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
-  lift_wall();
+  walls_.lift(method, time);
   bind();
   // Between sorts nobody counts: a state that is gone on with must not be judged otherwise.
-  if (fresh) extremes.max_neighbours = most_neighbours();
+  if (fresh) count_neighbours();
   if (method.integrator == Integrator::kick_drift_kick) {
     sum_wall_pressure();
     if (fresh) start_kick_drift_kick();
@@ -349,7 +266,7 @@ PairScales Engine<T>::scales() const {
   k.inverse_length = 1.0 / method.smoothing_length;
   k.inverse_speed = 1.0 / method.sound_speed;
   k.inverse_density = 1.0 / method.reference_density;
-  if (method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas) {
+  if (keeps_diffused(method)) {
     k.hydrostatic = method.gravity / (method.sound_speed * method.sound_speed);
     k.hydrostatic_middle = k.hydrostatic.dot(method.domain.min + method.domain.max) / 2.0;
   }
@@ -358,8 +275,7 @@ PairScales Engine<T>::scales() const {
   return k;
 }
 
-// ---- order in memory
-// ---------------------------------------------------------------------------------------------
+// Order in memory.
 
 /// Whether particles are to be retired, or their order has served its time.
 template <typename T>
@@ -370,18 +286,18 @@ bool Engine<T>::order_due() const {
 
 template <typename T>
 void Engine<T>::advance_tracks(double duration) {
-  elapsed_ += duration * method.sound_speed / method.smoothing_length;
+  tracks_.age += duration * method.sound_speed / method.smoothing_length;
 }
 
 template <typename T>
 void Engine<T>::compare_with_tracks(const ParticleSpan& p, Motion& seen) {
-  sweeps_.updates.compare(p, pairs_, tracks(), leeway<T>(), static_cast<T>(elapsed_), seen);
+  sweeps_.updates.compare(p, pairs_, tracks_.view(), kLeeway<T>, static_cast<T>(tracks_.age), seen);
 }
 
 /// New lists where the old ones no longer hold.
 template <typename T>
 void Engine<T>::keep_lists(const Motion& seen) {
-  if (!seen.strayed && elapsed_ <= kListLifetime) return;
+  if (!seen.strayed && tracks_.age <= kLeeway<double>.lifetime) return;
   const PassClock clock(pass_seconds, Pass::sort);
   make_lists();
 }
@@ -401,7 +317,7 @@ void Engine<T>::sort() {
   particles.x_sorted = particles.x;
   particles.y_sorted = particles.y;
   bind();
-  extremes.max_neighbours = most_neighbours();
+  count_neighbours();
   ++sort_count;
   // From here on all is as a solver finds it that goes on with this state: the next step sees wall
   // pressures summed in this order, and nothing of what left.
@@ -429,14 +345,13 @@ void Engine<T>::reorder(const Layout& next) {
     std::vector<double>& values = particles.*field.member;
     double empty = 0.0;
     if (field.name == "id") empty = -1.0;
-    // Far from everything, and from each other.
-    const double apart = field.unit == "m" ? 1e8 * method.smoothing_length : 0.0;
+    const double scale = field.unit == "m" ? method.smoothing_length : 0.0;
     std::vector<double> moved(next.slots());
     team_.run(next.chunks(), [&](std::size_t chunk) {
       const std::size_t end = kCluster * next.chunk_begin(chunk + 1);
       for (std::size_t s = kCluster * next.chunk_begin(chunk); s < end; ++s) {
-        moved[s] = next.source[s] != Layout::kEmpty ? values[next.source[s]]
-                                                    : empty + apart * static_cast<double>(s + 1);
+        moved[s] =
+            next.source[s] != Layout::kEmpty ? values[next.source[s]] : empty + scale * nowhere(s);
       }
     });
     values = std::move(moved);
@@ -453,11 +368,9 @@ void Engine<T>::bind() {
   origin_x_.resize(layout.clusters());
   origin_y_.resize(layout.clusters());
   scales_ = scales();
-  resize_pairs(pairs_, slots);
-  // Molteni-Colagrossi diffuses the excess itself: no field of its own.
-  const bool own = method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas;
-  if (own) pairs_.diffused.resize(slots);
-  for (auto* a : {&tracks_.x, &tracks_.y, &tracks_.u, &tracks_.v}) a->resize(slots);
+  pairs_.resize(slots);
+  if (keeps_diffused(method)) pairs_.diffused.resize(slots);
+  tracks_.resize(slots);
   for_chunks([&](const ParticleSpan& p, Motion&) {
     for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
       const Vec origin = grid_.tile_center(bounds.tile[c]);
@@ -472,108 +385,32 @@ void Engine<T>::bind() {
 /// Pair lists for tracks that begin here and now.
 template <typename T>
 void Engine<T>::make_lists() {
-  elapsed_ = 0.0;
-  for_chunks([&](const ParticleSpan& p, Motion&) {
-    for (std::size_t s = p.begin; s < p.end; ++s) {
-      tracks_.x[s] = pairs_.x[s];
-      tracks_.y[s] = pairs_.y[s];
-      tracks_.u[s] = track_speed(pairs_.u[s]);
-      tracks_.v[s] = track_speed(pairs_.v[s]);
-    }
-  });
-  bounds.assign_boxes(team_, layout, method, leeway<double>(),
+  tracks_.age = 0.0;
+  for_chunks([&](const ParticleSpan& p, Motion&) { tracks_.begin(pairs_, p.begin, p.end); });
+  bounds.assign_boxes(team_, layout, method, kLeeway<double>,
                       {particles.x.data(), particles.y.data(), particles.vx.data(),
                        particles.vy.data(), particles.id.data()});
   const PairRange<T> range{static_cast<T>(method.support_ratio() + kListSlack),
-                           constants_.tile_size, leeway<T>()};
-  const PairSet<T> fluid{layout, bounds, tracks()};
+                           constants_.tile_size, kLeeway<T>};
+  const PairSet<T> fluid{layout, bounds, tracks_.view()};
   build_pair_list(team_, sweeps_, range, fluid, fluid, fluid_to_fluid_);
-  if (wall_count > 0) {
-    const PairSet<T> wall{wall_layout_,
-                          wall_bounds_,
-                          {walls_.x.data(), walls_.y.data(), walls_.u.data(), walls_.v.data()}};
+  if (!walls_.empty()) {
+    const PairSet<T> wall = walls_.set();
     build_pair_list(team_, sweeps_, range, fluid, wall, fluid_to_wall_);
     build_pair_list(team_, sweeps_, range, wall, fluid, wall_to_fluid_);
   }
-  place_sums();
+  sums_.place(fluid_to_fluid_, layout.chunk,
+              method.integrator == Integrator::modified_leap_frog ? kRateSums.stride
+                                                                  : kAccelerationSums.stride);
 }
 
-/// Room for every chunk's sums, and who brings what to whom.
 template <typename T>
-void Engine<T>::place_sums() {
-  const auto& lists = fluid_to_fluid_.chunks;
-  const auto chunk = static_cast<std::uint32_t>(layout.chunk);
-  const std::size_t stride = method.integrator == Integrator::modified_leap_frog
-                                 ? kRateSums.stride
-                                 : kAccelerationSums.stride;
-  chunk_sums_.resize(lists.size());
-  sums_of_chunks_.resize(lists.size());
-  arrivals_.resize(lists.size());
-  for (auto& arrivals : arrivals_) arrivals.clear();
-  for (std::uint32_t k = 0; k < lists.size(); ++k) {
-    chunk_sums_[k].resize(stride * lists[k].places());
-    sums_of_chunks_[k] = chunk_sums_[k].data();
-    auto place = static_cast<std::uint32_t>(lists[k].begin.size() - 1);
-    for (const std::uint32_t guest : lists[k].guests) {
-      arrivals_[guest / chunk].push_back({k, place++, guest % chunk});
-    }
-  }
+void Engine<T>::count_neighbours() {
+  extremes.max_neighbours =
+      most_neighbours(team_, layout, fluid_to_fluid_, sums_, pairs_, method.support_ratio());
 }
 
-/// Of one particle when they are many, else 0: a bound from the lists tells most cases.
-template <typename T>
-std::uint32_t Engine<T>::most_neighbours() {
-  const auto& lists = fluid_to_fluid_.chunks;
-  // Entries that a cluster takes part in, per place of each chunk.
-  std::vector<std::vector<std::uint32_t>> met(lists.size());
-  team_.run(lists.size(), [&](std::size_t k) {
-    met[k].assign(lists[k].places(), 0);
-    for (const std::uint32_t target : lists[k].targets) ++met[k][target];
-    for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) {
-      met[k][c] += lists[k].begin[c + 1] - lists[k].begin[c];
-    }
-  });
-  std::vector<std::uint32_t> most_of(lists.size(), 0);
-  team_.run(lists.size(), [&](std::size_t k) {
-    std::vector<std::uint32_t> all(layout.chunk, 0);
-    for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) all[c] = met[k][c];
-    for (const Arrival& a : arrivals_[k]) all[a.cluster] += met[a.chunk][a.place];
-    most_of[k] = *std::max_element(all.begin(), all.end()) * static_cast<std::uint32_t>(kCluster);
-  });
-  std::uint32_t most = 0;
-  for (const std::uint32_t m : most_of) most = std::max(most, m);
-  if (most > kManyNeighbours) most = count_most_neighbours();
-  return most > kManyNeighbours ? most : 0;
-}
-
-/// Over all particles; a neighbour in another tile is left out of this count.
-template <typename T>
-std::uint32_t Engine<T>::count_most_neighbours() const {
-  const auto& lists = fluid_to_fluid_.chunks;
-  std::vector<std::uint32_t> count(layout.slots(), 0);
-  const T cut_off_sq = static_cast<T>(method.support_ratio() * method.support_ratio());
-  for (std::size_t k = 0; k < lists.size(); ++k) {
-    for (std::size_t c = 0; c + 1 < lists[k].begin.size(); ++c) {
-      const std::size_t first_i = kCluster * (layout.chunk_begin(k) + c);
-      for (std::uint32_t e = lists[k].begin[c]; e < lists[k].begin[c + 1]; ++e) {
-        const std::size_t first_j = kCluster * (lists[k].entries[e] & PairList::kClusterMask);
-        for (std::size_t i = first_i; i < first_i + kCluster; ++i) {
-          for (std::size_t j = first_j; j < first_j + kCluster; ++j) {
-            const T dx = pairs_.x[i] - pairs_.x[j];
-            const T dy = pairs_.y[i] - pairs_.y[j];
-            if (!(dx * dx + dy * dy < cut_off_sq)) continue;
-            ++count[i];
-            if (first_i != first_j) ++count[j];
-          }
-        }
-      }
-    }
-  }
-  return count.empty() ? 0 : *std::max_element(count.begin(), count.end());
-}
-
-// ---- passes
-// ------------------------------------------------------------------------------------------------------
+// Passes.
 
 template <typename T>
 void Engine<T>::sum_pairs(typename Sweeps<T>::Sweep loop) {
@@ -585,15 +422,15 @@ template <typename T>
 void Engine<T>::run_sweep(typename Sweeps<T>::Sweep loop) {
   team_.run(layout.chunks(), [&](std::size_t chunk) {
     SweepTask<T> task;
-    task.self = view(pairs_);
+    task.self = pairs_.view();
     task.fluid = task.self;
-    task.wall = view(walls_);
+    task.wall = walls_.view();
     task.to_fluid = &fluid_to_fluid_.chunks[chunk];
-    task.to_wall = wall_count > 0 ? &fluid_to_wall_.chunks[chunk] : nullptr;
+    task.to_wall = !walls_.empty() ? &fluid_to_wall_.chunks[chunk] : nullptr;
     task.first_cluster = layout.chunk_begin(chunk);
     task.clusters = layout.chunk_begin(chunk + 1) - task.first_cluster;
     task.constants = &constants_;
-    task.sums = chunk_sums_[chunk].data();
+    task.sums = sums_.of(chunk);
     loop(task);
   });
 }
@@ -602,8 +439,7 @@ void Engine<T>::run_sweep(typename Sweeps<T>::Sweep loop) {
 template <typename T>
 Rates<T> Engine<T>::gather(const ParticleSpan& chunk, const SumBlocks& blocks) {
   const std::size_t n = chunk.begin / (kCluster * layout.chunk);
-  T* const own = chunk_sums_[n].data();
-  sweeps_.updates.gather(arrivals_[n], sums_of_chunks_.data(), blocks.stride, own);
+  sweeps_.updates.gather(sums_.arrivals(n), sums_.of_chunks(), blocks.stride, sums_.of(n));
   return rates_of(chunk, blocks);
 }
 
@@ -611,12 +447,10 @@ Rates<T> Engine<T>::gather(const ParticleSpan& chunk, const SumBlocks& blocks) {
 template <typename T>
 Rates<T> Engine<T>::rates_of(const ParticleSpan& chunk, const SumBlocks& blocks) const {
   // c/h, c^2/h times the volume of a particle in h^2 and the constant of grad W.
-  const double slope_scale = method.kernel == KernelKind::truncated_gaussian
-                                 ? TruncatedGaussian::slope_scale
-                                 : WendlandC2::slope_scale;
   const double ratio = method.spacing / method.smoothing_length;
-  const double scale = ratio * ratio * slope_scale * method.sound_speed / method.smoothing_length;
-  return {chunk_sums_[chunk.begin / (kCluster * layout.chunk)].data(),
+  const double scale = ratio * ratio * kernel_slope_scale(method.kernel) * method.sound_speed /
+                       method.smoothing_length;
+  return {sums_.of(chunk.begin / (kCluster * layout.chunk)),
           chunk.begin,
           blocks,
           scale * method.reference_density,
@@ -624,44 +458,11 @@ Rates<T> Engine<T>::rates_of(const ParticleSpan& chunk, const SumBlocks& blocks)
           method.gravity};
 }
 
-/// Takes out what the lower edge of the lifted wall has passed: out of the kernel's reach, without
-/// pressure.
-template <typename T>
-void Engine<T>::lift_wall() {
-  std::erase_if(lifted_, [&](const LiftedParticle& p) {
-    if (!method.lifted_wall->has_passed(p.place, time)) return false;
-    walls_.x[p.slot] = walls_.y[p.slot] = static_cast<T>(far_from_all(p.slot));
-    walls_.excess[p.slot] = walls_.stress[p.slot] = T{0};
-    walls_.volume[p.slot] = T{1};
-    return true;
-  });
-}
-
-/// eq. 9, and from it the density, volume and stress of the dummy particles (eq. 3).
 template <typename T>
 void Engine<T>::sum_wall_pressure() {
-  if (wall_count == 0) return;
+  if (walls_.empty()) return;
   const PassClock clock(pass_seconds, Pass::wall_pressure);
-  team_.run(wall_to_fluid_.chunks.size(), [&](std::size_t chunk) {
-    SweepTask<T> task;
-    task.self = view(walls_);
-    task.fluid = view(pairs_);
-    task.to_fluid = &wall_to_fluid_.chunks[chunk];
-    task.first_cluster = wall_layout_.chunk_begin(chunk);
-    task.clusters = wall_layout_.chunk_begin(chunk + 1) - task.first_cluster;
-    task.constants = &constants_;
-    task.sums = wall_excess_.data();
-    sweeps_.wall_pressure(task);
-    const std::size_t begin = kCluster * task.first_cluster;
-    for (std::size_t s = begin; s < begin + kCluster * task.clusters; ++s) {
-      T excess = wall_excess_[s];
-      if (method.wall_pressure == WallPressure::clamped) excess = std::max(excess, T{0});
-      const T volume = T{1} / (T{1} + excess);
-      walls_.excess[s] = excess;
-      walls_.volume[s] = volume;
-      walls_.stress[s] = excess * volume * volume;
-    }
-  });
+  walls_.sum_pressures(team_, method, sweeps_, constants_, pairs_.view(), wall_to_fluid_);
 }
 
 template <typename T>
@@ -755,7 +556,7 @@ void Engine<T>::step_leap_frog() {
   note_motion(motion);
   time += time_step;
   ++step_count;
-  lift_wall();
+  walls_.lift(method, time);
   order_due() ? sort() : keep_lists(motion);
 }
 
@@ -800,22 +601,15 @@ void Engine<T>::step_kick_drift_kick() {
   }));
   time += time_step;
   ++step_count;
-  lift_wall();
+  walls_.lift(method, time);
   if (order_due()) sort();
 }
 
-// ---- for readers
-// -------------------------------------------------------------------------------------------------
+// For readers.
 
 template <typename T>
 std::vector<double> Engine<T>::wall_pressures() const {
-  std::vector<double> pressures(wall_count, 0.0);
-  const double scale = method.reference_density * method.sound_speed * method.sound_speed;
-  for (std::size_t s = 0; s < wall_layout_.slots(); ++s) {
-    if (wall_layout_.source[s] == Layout::kEmpty) continue;
-    pressures[wall_layout_.source[s]] = static_cast<double>(walls_.excess[s]) * scale;
-  }
-  return pressures;
+  return walls_.pressures(method);
 }
 
 template <typename T>
@@ -828,10 +622,8 @@ double Engine<T>::pair_lanes() const {
 
 template <typename T>
 std::size_t Engine<T>::memory_bytes() const {
-  std::size_t bytes = pairs_.bytes() + walls_.bytes() + fluid_to_fluid_.bytes() +
-                      fluid_to_wall_.bytes() + wall_to_fluid_.bytes() + tracks_.bytes();
-  for (const auto& sums : chunk_sums_) bytes += sums.bytes();
-  for (const auto& arrivals : arrivals_) bytes += arrivals.capacity() * sizeof(Arrival);
+  std::size_t bytes = pairs_.bytes() + walls_.bytes() + tracks_.bytes() + sums_.bytes() +
+                      fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
   return bytes + layout.source.capacity() * sizeof(std::uint32_t);
 }

@@ -46,4 +46,10 @@ struct WendlandC2 {
                                                 : WendlandC2::value(r_sq);
 }
 
+/// The constant of slope(R^2).
+[[nodiscard]] inline double kernel_slope_scale(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope_scale
+                                                : WendlandC2::slope_scale;
+}
+
 }  // namespace sluice

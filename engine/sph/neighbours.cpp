@@ -43,9 +43,9 @@ class StripSearch {
     }
   }
 
-  /// Appends the entries for cluster `i` of `self`; later clusters of its strip begin no farther
-  /// left than self.x_min_after[i]. Clusters of `other` before `first` are left out. Returns how
-  /// many of `out` they are.
+  /// Fills `out` with the entries for cluster `i` of `self`; later clusters of its strip begin no
+  /// farther left than self.x_min_after[i]. Clusters of `other` before `first` are left out.
+  /// Returns how many they are; `out` may be longer.
   std::size_t collect(const ClusterBounds& self, std::size_t i, std::size_t first,
                       std::vector<std::uint32_t>& out) {
     std::size_t found = 0;

@@ -37,6 +37,19 @@ class AlignedArray {
   std::size_t capacity_ = 0;
 };
 
+/// Read access to PairArrays.
+template <typename T>
+struct PairView {
+  const T* x = nullptr;
+  const T* y = nullptr;
+  const T* u = nullptr;
+  const T* v = nullptr;
+  const T* excess = nullptr;
+  const T* volume = nullptr;
+  const T* diffused = nullptr;
+  const T* stress = nullptr;
+};
+
 /// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one entry per
 /// slot. Positions are relative to the origin of the cluster's tile, so that single precision
 /// resolves them in a domain of any size.
@@ -46,9 +59,17 @@ struct PairArrays {
   AlignedArray<T> u, v;      ///< U
   AlignedArray<T> excess;    ///< s
   AlignedArray<T> volume;    ///< V
-  AlignedArray<T> diffused;  ///< psi of the density diffusion
   AlignedArray<T> stress;    ///< A
+  AlignedArray<T> diffused;  ///< psi of the density diffusion; empty where that is s
 
+  void resize(std::size_t slots) {
+    for (auto* a : {&x, &y, &u, &v, &excess, &volume, &stress}) a->resize(slots);
+  }
+  [[nodiscard]] PairView<T> view() const {
+    const T* psi = diffused.size() > 0 ? diffused.data() : excess.data();
+    return {x.data(),      y.data(),      u.data(), v.data(),
+            excess.data(), volume.data(), psi,      stress.data()};
+  }
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
     for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &stress}) {

@@ -11,19 +11,6 @@
 
 namespace sluice {
 
-/// Read access to PairArrays; a field that the terms do not use may be null.
-template <typename T>
-struct PairView {
-  const T* x = nullptr;
-  const T* y = nullptr;
-  const T* u = nullptr;
-  const T* v = nullptr;
-  const T* excess = nullptr;
-  const T* volume = nullptr;
-  const T* diffused = nullptr;
-  const T* stress = nullptr;
-};
-
 /// Constants of the terms, dimensionless (terms-inl.hpp).
 template <typename T>
 struct TermConstants {

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/sph/pair_arrays.hpp"
+
+namespace sluice {
+
+/// The sums over a mutual list, chunk by chunk, and who brings what to whom. Every chunk has sums
+/// of its own, for its clusters and for its guests, so that no two chunks ever add to the same
+/// place; what is for a guest waits there until the guest's chunk takes it, in the order of chunks.
+template <typename T>
+class ChunkSums {
+ public:
+  /// Room for `stride` values per place of every chunk of `clusters_per_chunk` clusters.
+  void place(const PairList& list, std::size_t clusters_per_chunk, std::size_t stride) {
+    const std::size_t chunks = list.chunks.size();
+    sums_.resize(chunks);
+    of_chunks_.resize(chunks);
+    arrivals_.resize(chunks);
+    for (auto& arrivals : arrivals_) arrivals.clear();
+    for (std::size_t k = 0; k < chunks; ++k) {
+      const PairList::Chunk& chunk = list.chunks[k];
+      sums_[k].resize(stride * chunk.places());
+      of_chunks_[k] = sums_[k].data();
+      std::size_t place = chunk.begin.size() - 1;
+      for (const std::uint32_t guest : chunk.guests) {
+        arrivals_[guest / clusters_per_chunk].push_back(
+            {static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(place++),
+             static_cast<std::uint32_t>(guest % clusters_per_chunk)});
+      }
+    }
+  }
+
+  [[nodiscard]] T* of(std::size_t chunk) const { return of_chunks_[chunk]; }
+  [[nodiscard]] T* const* of_chunks() const { return of_chunks_.data(); }
+  /// What others have for the clusters of `chunk`, in the order of chunks.
+  [[nodiscard]] std::span<const Arrival> arrivals(std::size_t chunk) const {
+    return arrivals_[chunk];
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const auto& sums : sums_) sum += sums.bytes();
+    for (const auto& arrivals : arrivals_) sum += arrivals.capacity() * sizeof(Arrival);
+    return sum;
+  }
+
+ private:
+  std::vector<AlignedArray<T>> sums_;
+  std::vector<T*> of_chunks_;
+  std::vector<std::vector<Arrival>> arrivals_;
+};
+
+}  // namespace sluice
