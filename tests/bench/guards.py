@@ -11,10 +11,9 @@ with the time step (largest speed) and with the domain (who left it).
 import argparse
 import json
 import pathlib
-import re
-import subprocess
 import sys
-import tempfile
+
+from callgrind import Profile
 
 PARTS = {
     "step": r"sluice::Simulation::step\(\)",
@@ -24,29 +23,13 @@ PARTS = {
 ALLOWED = 0.01  # of a step's instructions, for what is the guards' alone
 
 
-def instructions(sluice, scene, steps):
+def instructions(program, scene, steps):
     """Instructions of each part, with what it calls."""
-    with tempfile.TemporaryDirectory(prefix="sluice-guards-") as name:
-        out = pathlib.Path(name) / "callgrind.out"
-        content = json.loads(pathlib.Path(scene).read_text())
-        for key in ("sensors", "reference"):
-            content.pop(key, None)
-        bare = pathlib.Path(name) / "scene.json"
-        bare.write_text(json.dumps(content))
-        subprocess.run(
-            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", sluice, "run", bare,
-             "--folder", f"{name}/job", "--threads", "1", "--simd", "AVX2", "--progress", "none",
-             "--no-checkpoint", "--stop-after-step", str(steps)],
-            check=False, capture_output=True)
-        if not out.exists():
-            sys.exit("callgrind left nothing: is valgrind installed, and the scene valid?")
-        listing = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", out],
-                                 check=True, capture_output=True, text=True).stdout
-    counts = {}
-    for part, pattern in PARTS.items():
-        found = re.search(r"^\s*([\d,]+) .*" + pattern, listing, re.MULTILINE)
-        counts[part] = int(found[1].replace(",", "")) if found else 0
-    return counts
+    content = json.loads(pathlib.Path(scene).read_text(encoding="utf-8"))
+    for key in ("sensors", "reference"):
+        content.pop(key, None)
+    profile = Profile(program, content, steps)
+    return {part: profile.inclusive(pattern) for part, pattern in PARTS.items()}
 
 
 def main():

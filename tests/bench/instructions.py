@@ -4,18 +4,16 @@ code that no load on the machine can disturb.
 Usage: instructions.py SLUICE SCENES [--profile]
 
 Counts inside Solver::step only, on 800 particles over 130 steps (with sorts, lists and
-reinitialisations in them), with AVX2 forced since valgrind 3.19 does not run AVX-512. Each count is
-held against what it was when this file was last changed: more than 5 % above fails, more than 5 %
+reinitialisations in them). Each count is held against what it was when this file was last changed: more than 5 % above fails, more than 5 %
 below asks to lower the figure here. --profile also prints the functions that they go to.
 """
 
 import json
 import os
 import re
-import shutil
-import subprocess
 import sys
-import tempfile
+
+import callgrind
 
 # Instructions per particle and step, g++ 12.2 of Debian 12.
 EXPECTED = {"dambreak-paper.json": 594.0, "dambreak.json": 641.0}
@@ -34,44 +32,28 @@ def small(scene):
     return scene
 
 
-def profile(report):
+def print_shares(profile):
     """The functions with the largest shares, one line each."""
-    listing = subprocess.run(["callgrind_annotate", report], capture_output=True, text=True, check=True)
-    lines = re.findall(r"^ *([\d,]+) \( *([\d.]+)%\) +\S*?:(.*?)(?: \[.*)?$", listing.stdout, re.M)
+    lines = re.findall(r"^ *([\d,]+) \( *([\d.]+)%\) +\S*?:(.*?)(?: \[.*)?$", profile.listing(), re.M)
     for count, share, name in lines[:14]:
         per_step = int(count.replace(",", "")) / (PARTICLES * STEPS)
         print(f"  {per_step:8.1f}  {share:>5} %  {name[:110]}")
 
 
-def count(program, scene, folder, with_profile):
-    path = os.path.join(folder, "scene.json")
-    with open(path, "w", encoding="utf-8") as out:
-        json.dump(scene, out)
-    report = os.path.join(folder, "callgrind")
-    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={report}",
-               "--toggle-collect=sluice::Solver::step()", program, "run", path, "--folder",
-               os.path.join(folder, "job"), "--threads", "1", "--progress", "none",
-               "--no-checkpoint", "--simd", "AVX2", "--stop-after-step", str(STEPS)]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False)
-    if ended.returncode != 85:
-        sys.exit(f"instructions.py: {' '.join(command)} ended with {ended.returncode}: {ended.stderr}")
-    if with_profile:
-        profile(report)
-    return int(re.search(r"Collected : (\d+)", ended.stderr)[1]) / (PARTICLES * STEPS)
-
-
 def main():
     program, scenes = sys.argv[1:3]
     with_profile = "--profile" in sys.argv[3:]
-    if shutil.which("valgrind") is None:
+    if not callgrind.available():
         print("skipped: valgrind is not installed (deploy/install-dependencies.sh --tests)")
         return 77
     failed = 0
     for name, expected in EXPECTED.items():
         with open(os.path.join(scenes, name), encoding="utf-8") as stream:
             scene = small(json.load(stream))
-        with tempfile.TemporaryDirectory() as folder:
-            seen = count(program, scene, folder, with_profile)
+        profile = callgrind.Profile(program, scene, STEPS, within="sluice::Solver::step()")
+        if with_profile:
+            print_shares(profile)
+        seen = profile.total / (PARTICLES * STEPS)
         off = seen / expected - 1.0
         print(f"{name}: {seen:.1f} instructions per particle and step, {off:+.1%} of {expected:.1f}")
         if abs(off) > TOLERANCE:
