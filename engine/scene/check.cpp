@@ -46,11 +46,12 @@ void check_sound_speed(const Scene& scene, const Document& document, Problems& p
                              c, kMinSoundRatio, kMinSoundRatio * gravity_wave));
   }
   for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
-    const double speed = scene.fluid[i].velocity.norm();
+    const double speed = scene.fluid[i].greatest_speed();
     if (speed <= c) continue;
     problems.add(
-        at(at("/fluid", i), "velocity"),
-        fmt::format("is {:.6g} m/s; must be at most the sound speed, {:.6g} m/s", speed, c));
+        at("/fluid", i),
+        fmt::format("moves at up to {:.6g} m/s; must be at most the sound speed, {:.6g} m/s", speed,
+                    c));
   }
 }
 

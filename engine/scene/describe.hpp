@@ -83,6 +83,18 @@ void describe(Archive& a, FluidRegion& region) {
   describe_shape(a, region.shape, [&](auto& branch) {
     branch.vector("velocity", region.velocity,
                   {.about = "velocity at the start", .unit = "m/s", .range = from(-1e6, 1e6)});
+    branch.number("strain_rate", region.strain_rate,
+                  {.about = "A of a flow A (x, -y) about the middle of the region, on top of its "
+                            "velocity",
+                   .unit = "1/s",
+                   .range = from(-1e9, 1e9),
+                   .otherwise = "none"});
+    branch.number("rotation_rate", region.rotation_rate,
+                  {.about = "w of a rotation w (-y, x) about the middle of the region, on top of "
+                            "its velocity",
+                   .unit = "1/s",
+                   .range = from(-1e9, 1e9),
+                   .otherwise = "none"});
     branch.word("pressure", kInitialPressureWords, region.pressure,
                 {.about = "pressure at the start"});
   });

@@ -74,9 +74,10 @@ Box domain_of_flight(const Scene& scene) {
       const bool turns = v * f < 0 && -v / f < t;
       return turns ? -v * v / (2 * f) : 0.0;
     });
+    const Vec spread = Vec::Constant((region.greatest_speed() - region.velocity.norm()) * t);
     for (const Vec& shift : {flight, rise}) {
-      box.min = box.min.cwiseMin(start.min + shift);
-      box.max = box.max.cwiseMax(start.max + shift);
+      box.min = box.min.cwiseMin(start.min + shift - spread);
+      box.max = box.max.cwiseMax(start.max + shift + spread);
     }
   }
   const double margin = start.size().maxCoeff() + scene.method.support();

@@ -109,7 +109,7 @@ void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
     cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
       if (solid.takes(point)) return;
       require_apart(earlier, point, i);
-      append(particles, point, region.velocity, density.excess(point));
+      append(particles, point, region.velocity_at(point), density.excess(point));
     });
     if (particles.size() == before) {
       throw SceneError({fmt::format("/fluid/{}", i),

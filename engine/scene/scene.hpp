@@ -52,8 +52,15 @@ enum class InitialPressure {
 
 struct FluidRegion {
   Shape shape;
-  Vec velocity = Vec::Zero();  ///< m/s
+  Vec velocity = Vec::Zero();           ///< m/s
+  std::optional<double> strain_rate;    ///< A of v = A (x, -y) about the middle, 1/s
+  std::optional<double> rotation_rate;  ///< w of v = w (-y, x) about the middle, 1/s
   InitialPressure pressure = InitialPressure::hydrostatic;
+
+  /// Velocity at the start of a particle at `point`, m/s. The middle is that of the shape's bounds.
+  [[nodiscard]] Vec velocity_at(const Vec& point) const;
+  /// No particle of the region is faster at the start, m/s.
+  [[nodiscard]] double greatest_speed() const;
 };
 
 enum class SensorKind { pressure, surface_height, surge_front, column_height, energy, arrival };

@@ -17,7 +17,7 @@ namespace {
 double decades(const Scene& scene, const SchemeAnalysis& analysis) {
   const Method& m = scene.method;
   double speed = 0.0;
-  for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.velocity.norm());
+  for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.greatest_speed());
   const double courant = m.courant * m.sound_speed / (m.sound_speed + speed);
   const double steps = scene.end_time * m.sound_speed / (courant * m.smoothing_length);
   const double growth = std::log10(analysis.spectral_radius(courant));

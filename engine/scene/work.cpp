@@ -52,7 +52,7 @@ double expected_time_step(const Scene& scene) {
   const Method& method = scene.method;
   const double strength = method.gravity.norm();
   double speed = std::sqrt(2 * strength * fluid_height(scene));
-  for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.velocity.norm());
+  for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.greatest_speed());
   const double sound = method.courant * method.smoothing_length / (method.sound_speed + speed);
   return std::min(sound, force_time_step(method));
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "engine/scene/initial.hpp"
 #include "engine/study/stability_scenes.hpp"
 
 namespace sluice {
@@ -14,29 +16,11 @@ namespace {
 constexpr double kEnd = 0.8;     // A t, with A = 1/s and R = 1 m
 constexpr double kSound = 15.0;  // m/s
 
-double root_mean_square(const std::vector<double>& values) {
+/// Root mean square of y, m.
+double extent(const Particles& particles) {
   double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-DropPoint run_drop(StabilityBench& bench, int per_radius) {
-  double at_start = 1.0;
-  const CaseRun run = bench.run(in_space(fmt::format("drop-{}", per_radius),
-                                         circle(Vec::Zero(), 1.0), 1.0 / per_radius, kSound, kEnd),
-                                StabilityCheck::refuse, [&](Particles& particles) {
-                                  for (std::size_t i = 0; i < particles.size(); ++i) {
-                                    particles.vx[i] = -particles.x[i];
-                                    particles.vy[i] = particles.y[i];
-                                  }
-                                  at_start = root_mean_square(particles.y);
-                                });
-  if (!run.completed() || !run.last) {
-    throw std::runtime_error(fmt::format("the drop with R/dx = {} did not end well", per_radius));
-  }
-  const Particles& end = run.last->solver.particles;
-  return {1.0 / per_radius, root_mean_square(end.y) / at_start, drop_stretch(run.last->solver.time),
-          static_cast<double>(end.size())};
+  for (const double y : particles.y) sum += y * y;
+  return std::sqrt(sum / static_cast<double>(particles.size()));
 }
 
 }  // namespace
@@ -52,11 +36,30 @@ double drop_stretch(double a_t) {
   return s;
 }
 
+DropRun run_drop(StabilityBench& bench, int per_radius) {
+  nlohmann::json drop = circle(Vec::Zero(), 1.0);
+  drop["strain_rate"] = -1.0;
+  DropRun result{bench.run(in_space(fmt::format("elliptical-drop-{}", per_radius), std::move(drop),
+                                    1.0 / per_radius, kSound, kEnd)),
+                 {}};
+  if (!result.run.completed() || !result.run.last) return result;
+  const SolverState& end = result.run.last->solver;
+  const double at_start = extent(create_particles(result.run.scene).state.particles);
+  result.point = DropPoint{1.0 / per_radius, extent(end.particles) / at_start,
+                           drop_stretch(end.time), static_cast<double>(end.particles.size())};
+  return result;
+}
+
 std::vector<DropPoint> run_drops(StabilityBench& bench) {
-  const std::vector<int> ladder =
-      bench.pick(std::vector<int>{10, 15, 20, 30}, std::vector<int>{10, 20, 40, 80});
   std::vector<DropPoint> points;
-  for (const int per_radius : ladder) points.push_back(run_drop(bench, per_radius));
+  for (const int per_radius :
+       bench.pick(std::vector{10, 15, 20, 30}, std::vector{10, 20, 40, 80})) {
+    const DropRun drop = run_drop(bench, per_radius);
+    if (!drop.point) {
+      throw std::runtime_error(fmt::format("the drop with R/dx = {} did not end well", per_radius));
+    }
+    points.push_back(*drop.point);
+  }
   return points;
 }
 
@@ -64,9 +67,8 @@ DropOrder order_of(const std::vector<DropPoint>& points) {
   DropOrder result;
   std::vector<Refined> ratios;
   for (const DropPoint& point : points) {
-    const double ratio = point.stretch / point.exact;
-    ratios.push_back({point.spacing, ratio});
-    result.errors.push_back({point.spacing, std::abs(ratio - 1.0)});
+    ratios.push_back({point.spacing, point.ratio()});
+    result.errors.push_back({point.spacing, point.error()});
   }
   const auto finer = [](const Refined& a, const Refined& b) { return a.spacing < b.spacing; };
   std::sort(ratios.begin(), ratios.end(), finer);
@@ -91,9 +93,8 @@ Table drop_table(const std::vector<DropPoint>& points) {
   }
   table.head = {"R/dx", "particles", "semi-axis over exact", "error, %"};
   for (const DropPoint& point : points) {
-    const double ratio = point.stretch / point.exact;
-    table.rows.push_back({brief(1.0 / point.spacing, 4), brief(point.particles, 12), cell(ratio, 5),
-                          cell(100.0 * std::abs(ratio - 1.0), 3)});
+    table.rows.push_back({brief(1.0 / point.spacing, 4), brief(point.particles, 12),
+                          cell(point.ratio(), 5), cell(100.0 * point.error(), 3)});
   }
   return table;
 }

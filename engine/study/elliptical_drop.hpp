@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -21,9 +22,21 @@ struct DropPoint {
   double stretch = 0.0;  ///< root mean square of y over that at the start
   double exact = 0.0;    ///< at the time that the run ended
   double particles = 0.0;
+
+  [[nodiscard]] double ratio() const { return stretch / exact; }
+  [[nodiscard]] double error() const { return std::abs(ratio() - 1.0); }
 };
 
-/// Runs the drop with R/dx = 10, 20, 40 and 80 (quick: 10, 15, 20, 30) to A t = 0.8. Throws
+/// A run of the drop; no point when it did not end well.
+struct DropRun {
+  CaseRun run;
+  std::optional<DropPoint> point;
+};
+
+/// Runs the drop to A t = 0.8, with A = 1/s and R = 1 m.
+[[nodiscard]] DropRun run_drop(StabilityBench& bench, int per_radius);
+
+/// Runs the drop with R/dx = 10, 20, 40 and 80 (quick: 10, 15, 20, 30) one after another. Throws
 /// std::runtime_error when a run does not end well.
 [[nodiscard]] std::vector<DropPoint> run_drops(StabilityBench& bench);
 

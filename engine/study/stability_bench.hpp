@@ -37,7 +37,7 @@ class StabilityBench {
   StabilityBench(std::filesystem::path folder, SuiteForm form, nlohmann::json scheme)
       : folder_(std::move(folder)), form_(form), scheme_(std::move(scheme)) {}
 
-  /// Changes the particles of a scene before its first step: velocities that a scene cannot say.
+  /// Changes the particles of a scene before its first step: what a scene cannot say.
   using Prepare = std::function<void(Particles&)>;
 
   /// Runs `scene` to its end or failure, with the bench's scheme unless it has numerics of its own.

@@ -8,6 +8,7 @@
 #include <complex>
 #include <numbers>
 
+#include "engine/scene/initial.hpp"
 #include "engine/study/stability_case.hpp"
 #include "engine/study/stability_scenes.hpp"
 
@@ -34,18 +35,13 @@ double closest_pair(const Particles& p) {
 
 CaseResult rotating_patch(StabilityBench& bench) {
   const double dx = 1.0 / bench.pick(20, 50);
-  double at_start = 1.0;
-  const CaseRun run = bench.run(in_space("rotating-patch", rectangle(Vec(-0.5, -0.5), Vec(1, 1)),
-                                         dx, 7.0, bench.pick(1.0, 2.0)),
-                                StabilityCheck::refuse, [&](Particles& p) {
-                                  for (std::size_t i = 0; i < p.size(); ++i) {
-                                    p.vx[i] = p.y[i];
-                                    p.vy[i] = -p.x[i];
-                                  }
-                                  at_start = angular_momentum(p);
-                                });
+  Json patch = rectangle(Vec(-0.5, -0.5), Vec(1, 1));
+  patch["rotation_rate"] = -1.0;
+  const CaseRun run =
+      bench.run(in_space("rotating-patch", std::move(patch), dx, 7.0, bench.pick(1.0, 2.0)));
   CaseResult result = result_of(run, Verdict::stable, Verdict::stable_with_warnings);
   if (!run.completed()) return result;
+  const double at_start = angular_momentum(create_particles(run.scene).state.particles);
   const Particles& end = run.last->solver.particles;
   result.figures.push_back(
       {"angular momentum", std::abs(angular_momentum(end) / at_start - 1.0), 1e-3});

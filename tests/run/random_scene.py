@@ -81,6 +81,9 @@ def draw_fluid(dice, width, height, sound):
         if dice.random() < 0.5:
             speed = dice.choice([0.01, 0.05, 0.1, 0.2, 0.4, 0.8]) * sound
             region["velocity"] = point_in(dice, [-speed, -speed], [speed, speed])
+        if dice.random() < 0.2:
+            rate = dice.choice([0.01, 0.1, 0.3]) * sound / max(width, height)
+            region[dice.choice(["strain_rate", "rotation_rate"])] = dice.choice([-rate, rate])
         if dice.random() < 0.5:
             region["pressure"] = dice.choice(["hydrostatic", "zero"])
         regions.append(region)

@@ -98,6 +98,8 @@ RC_GTEST_PROP(CanonicalText, GivesBackTheSameDoubles, ()) {
   text["resolution"]["smoothing_ratio"] = draw(0.8, 2.5);
   text["gravity"] = {draw(-10, 10), draw(-10, 10)};
   text["fluid"][0]["velocity"] = {draw(-1, 1), draw(-1, 1)};
+  text["fluid"][0]["strain_rate"] = draw(-1, 1);
+  text["fluid"][0]["rotation_rate"] = draw(-1, 1);
   const Scene scene = parsed(text);
   const ParseResult again = parse_scene(canonical_text(scene));
   RC_ASSERT(again.scene.has_value());
@@ -110,6 +112,8 @@ RC_GTEST_PROP(CanonicalText, GivesBackTheSameDoubles, ()) {
   RC_ASSERT(a.domain.min == b.domain.min);
   RC_ASSERT(a.domain.max == b.domain.max);
   RC_ASSERT(scene.fluid[0].velocity == again.scene->fluid[0].velocity);
+  RC_ASSERT(scene.fluid[0].strain_rate == again.scene->fluid[0].strain_rate);
+  RC_ASSERT(scene.fluid[0].rotation_rate == again.scene->fluid[0].rotation_rate);
 }
 
 TEST(IdentityText, IsBlindToNameDescriptionAndEndTime) {

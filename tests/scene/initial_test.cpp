@@ -104,6 +104,25 @@ TEST(InitialParticles, StartWithTheirRegionsVelocity) {
   EXPECT_EQ(p.velocity(200), Vec(-1, 2));
 }
 
+TEST(InitialParticles, AreStrainedAndTurnedAboutTheMiddleOfTheirRegion) {
+  json text = base_scene();
+  text["material"]["sound_speed"] = 50;
+  text["fluid"].push_back(region(
+      R"({"shape": "rectangle", "corner": [1.25, 0.25], "size": [0.5, 0.3], "velocity": [-1, 2],
+          "strain_rate": 3, "rotation_rate": 4})"));
+  const Scene scene = parsed(text);
+  const Particles p = create_particles(scene).state.particles;
+  ASSERT_GT(p.size(), 200U);
+  for (std::size_t i = 200; i < p.size(); ++i) {
+    const double x = p.x[i] - 1.5;
+    const double y = p.y[i] - 0.4;
+    EXPECT_NEAR(p.vx[i], -1 + 3 * x - 4 * y, 1e-12);
+    EXPECT_NEAR(p.vy[i], 2 - 3 * y + 4 * x, 1e-12);
+    EXPECT_LE(p.velocity(i).norm(), scene.fluid[1].greatest_speed());
+  }
+  EXPECT_EQ(p.velocity(0), Vec(0, 0));
+}
+
 TEST(InitialParticles, StartWithTheDensityOfWaterAtRest) {
   // rho - rho_0 = rho_0 g (top - y) / c^2.
   const Scene scene = parsed(base_scene());

@@ -187,6 +187,24 @@ TEST(ParseScene, DrawsADomainAroundTheWholeFlightOfADrop) {
   EXPECT_LT(domain.min.y(), 3 - 9.81 / 2 - 0.2);
 }
 
+TEST(ParseScene, DrawsADomainAroundWhatAStrainedDropReaches) {
+  json text = testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 0.2}});
+  const Box at_rest = parsed(text).method.domain;
+  text["fluid"][0]["strain_rate"] = -5;
+  const Box strained = parsed(text).method.domain;
+  // The pole moves at |A| R for 1 s.
+  EXPECT_GE(strained.max.y(), at_rest.max.y() + 5 * 0.2);
+  EXPECT_LE(strained.min.x(), at_rest.min.x() - 5 * 0.2);
+}
+
+TEST(ParseScene, RefusesARotationFasterThanSound) {
+  json text = base_scene();
+  text["fluid"][0]["rotation_rate"] = 1e6;
+  const ParseResult result = parse_scene(text.dump());
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_EQ(result.problems[0].pointer, "/fluid/0");
+}
+
 TEST(ParseScene, MarksTheRimOfAnOpenTankOnly) {
   json text = base_scene();
   EXPECT_EQ(parsed(text).method.wall_top, 1.0);

@@ -65,6 +65,14 @@ class References(unittest.TestCase):
         for time, value in curve("standing_wave.json", "wall"):
             self.assertAlmostEqual(value, depth + amplitude * math.cos(omega * time), delta=1e-5)
 
+    def test_the_drop_keeps_its_area_and_its_kinetic_energy(self):
+        # (db/dt)^2 (1 + b^-4) = 2, differentiated over neighbouring points of the table.
+        points = [(0.0, 1.0)] + curve("elliptical_drop.json", "pole")
+        for (t0, b0), (t1, b1) in zip(points, points[1:]):
+            middle = 0.5 * (b0 + b1)
+            energy = ((b1 - b0) / (t1 - t0)) ** 2 * (1 + middle ** -4)
+            self.assertAlmostEqual(energy, 2.0, delta=4e-3)
+
     def test_still_water_has_the_weight_of_what_is_above(self):
         study = read(SCENES / "study-still.json")["scene"]
         sensors = {one["name"]: one for one in study["sensors"]}
