@@ -97,18 +97,18 @@ Finding some_escaped(const GuardLimits& limits, const StepFacts& facts) {
 
 // clang-format off
 constexpr std::array kFailing{
-    Guard{"a particle is not finite", true, not_finite},
-    Guard{"speed above the sound speed (m/s)", true, too_fast},
-    Guard{"density ratio rho/rho_0 too high", false, too_dense},
-    Guard{"density ratio rho/rho_0 too low", false, too_thin},
-    Guard{"time step collapsed (s)", true, step_collapsed},
-    Guard{"share of particles that left through a wall or the edge of the domain", false, too_many_escaped},
-    Guard{"energy grew (share of the initial energy)", false, energy_grew},
-    Guard{"neighbours of a particle", false, clumped},
+    Guard{"a particle is not finite", Suspect::fastest, not_finite},
+    Guard{"speed above the sound speed (m/s)", Suspect::fastest, too_fast},
+    Guard{"density ratio rho/rho_0 too high", Suspect::densest, too_dense},
+    Guard{"density ratio rho/rho_0 too low", Suspect::lightest, too_thin},
+    Guard{"time step collapsed (s)", Suspect::fastest, step_collapsed},
+    Guard{"share of particles that left through a wall or the edge of the domain", {}, too_many_escaped},
+    Guard{"energy grew (share of the initial energy)", {}, energy_grew},
+    Guard{"neighbours of a particle", {}, clumped},
 };
 constexpr std::array kWarning{
-    Guard{"speed above 0.3 of the sound speed (m/s)", true, fast},
-    Guard{"share of particles that left through a wall or the edge of the domain", false, some_escaped},
+    Guard{"speed above 0.3 of the sound speed (m/s)", Suspect::fastest, fast},
+    Guard{"share of particles that left through a wall or the edge of the domain", {}, some_escaped},
 };
 // clang-format on
 
@@ -150,14 +150,15 @@ std::optional<Diagnosis> first_breach(std::span<const Guard> guards, const Guard
   for (const Guard& guard : guards) {
     const Finding breach = guard.breached(limits, facts);
     if (!breach) continue;
-    const bool blame = guard.names_particle && facts.offending_particle;
-    return Diagnosis{.reason = std::string(guard.reason),
-                     .step = facts.step,
-                     .time = facts.time,
-                     .particle = blame ? std::optional(facts.offending_particle()) : std::nullopt,
-                     .value = breach->value,
-                     .limit = breach->limit,
-                     .suggestion = std::string(breach->suggestion)};
+    const bool blame = guard.suspect && facts.suspect_id;
+    return Diagnosis{
+        .reason = std::string(guard.reason),
+        .step = facts.step,
+        .time = facts.time,
+        .particle = blame ? std::optional(facts.suspect_id(*guard.suspect)) : std::nullopt,
+        .value = breach->value,
+        .limit = breach->limit,
+        .suggestion = std::string(breach->suggestion)};
   }
   return {};
 }

@@ -64,11 +64,11 @@ struct StepFacts {
   std::size_t initial_particles = 0;
   std::optional<double> energy;  ///< J/m, where it was summed
   GuardBaselines baselines;
-  std::function<double()> offending_particle;  ///< its id; asked only after a breach
+  std::function<double(Suspect)> suspect_id;  ///< asked only after a breach
 };
 
 /// Energy is summed, and its guard checked, every this many steps.
-inline constexpr std::uint64_t kEnergyInterval = 20;
+inline constexpr std::uint64_t kEnergyInterval = 50;
 
 /// One guard: `breached` returns the value found, the limit and what to do, or nothing.
 struct Breach {
@@ -78,7 +78,7 @@ struct Breach {
 };
 struct Guard {
   std::string_view reason;
-  bool names_particle;  ///< the solver's offending particle is to blame
+  std::optional<Suspect> suspect;  ///< the particle to blame, where it is one
   std::optional<Breach> (*breached)(const GuardLimits&, const StepFacts&);
 };
 

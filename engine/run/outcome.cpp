@@ -57,10 +57,15 @@ Json cost_json(const Account& account) {
 }
 
 Json extremes_json(const Outcome& outcome) {
-  return Json{{"max_speed", outcome.extremes.max_speed_seen},
-              {"initial_energy", outcome.extremes.initial_energy},
-              {"highest_energy", outcome.extremes.highest_energy},
-              {"energy_scale", outcome.extremes.energy_scale}};
+  const GuardBaselines& seen = outcome.extremes;
+  return Json{{"max_speed", seen.max_speed_seen},
+              {"min_density_ratio", 1.0 + seen.min_density_excess_seen / outcome.reference_density},
+              {"max_density_ratio", 1.0 + seen.max_density_excess_seen / outcome.reference_density},
+              {"min_time_step", seen.min_time_step_seen},
+              {"max_neighbours", seen.max_neighbours_seen},
+              {"initial_energy", seen.initial_energy},
+              {"highest_energy", seen.highest_energy},
+              {"energy_scale", seen.energy_scale}};
 }
 
 Json digests_json(const Outcome& outcome) {
@@ -99,6 +104,7 @@ Outcome describe_simulation(const Simulation& simulation) {
   outcome.leaked = simulation.leaked();
   outcome.overtopped = simulation.overtopped();
   outcome.extremes = simulation.baselines();
+  outcome.reference_density = simulation.scene().method.reference_density;
   for (const Series& series : simulation.series()) {
     outcome.series_digests.emplace_back(series.name, series_digest(series));
   }

@@ -48,7 +48,8 @@ struct Outcome {
   std::size_t leaked = 0;
   std::size_t overtopped = 0;
   GuardBaselines extremes;
-  std::string physics_digest;  ///< SHA-256; empty after a numerical failure
+  double reference_density = 0.0;  ///< kg/m^3
+  std::string physics_digest;      ///< SHA-256; empty after a numerical failure
   std::vector<std::pair<std::string, std::string>> series_digests;  ///< sensor, SHA-256
   Account account;
 

@@ -60,6 +60,8 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       series_(sensors_.empty_series()) {
   const Energy energy = solver_.energy();
   baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
+  baselines_.min_density_excess_seen = solver_.extremes().min_density_excess;
+  baselines_.max_density_excess_seen = solver_.extremes().max_density_excess;
   if (const auto broken = violation()) throw NumericalFailure(*broken);
   sample();
 }
@@ -85,7 +87,7 @@ void Simulation::step() {
   solver_.step();
   particle_steps_ += solver_.particle_count();
   count_retired();
-  baselines_.max_speed_seen = std::max(baselines_.max_speed_seen, solver_.extremes().max_speed);
+  note_extremes();
 
   std::optional<double> energy;
   const bool periodic = solver_.step_count() % kEnergyInterval == 0;
@@ -138,6 +140,19 @@ void Simulation::count_retired() {
   }
 }
 
+void Simulation::note_extremes() {
+  const Extremes& now = solver_.extremes();
+  GuardBaselines& seen = baselines_;
+  seen.max_speed_seen = std::max(seen.max_speed_seen, now.max_speed);
+  seen.min_density_excess_seen = std::min(seen.min_density_excess_seen, now.min_density_excess);
+  seen.max_density_excess_seen = std::max(seen.max_density_excess_seen, now.max_density_excess);
+  seen.max_neighbours_seen =
+      std::max(seen.max_neighbours_seen, static_cast<double>(now.max_neighbours));
+  const double step = solver_.time_step();
+  const bool first = seen.min_time_step_seen == 0.0;
+  seen.min_time_step_seen = first ? step : std::min(seen.min_time_step_seen, step);
+}
+
 void Simulation::sample() {
   const auto start = std::chrono::steady_clock::now();
   sensors_.sample(solver_, series_);
@@ -164,7 +179,7 @@ StepFacts Simulation::facts(std::optional<double> energy) const {
   now.initial_particles = initial_particles();
   now.energy = energy;
   now.baselines = baselines_;
-  now.offending_particle = [this] { return solver_.offending_particle_id(); };
+  now.suspect_id = [this](Suspect suspect) { return solver_.suspect_id(suspect); };
   return now;
 }
 

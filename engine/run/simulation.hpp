@@ -64,6 +64,7 @@ class Simulation {
 
  private:
   void count_retired();
+  void note_extremes();
   void sample();
   void note_warnings(const StepFacts& facts);
   [[nodiscard]] StepFacts facts(std::optional<double> energy) const;

@@ -116,6 +116,7 @@ class Engine final : public Solver::Impl {
   void measure();
   void write_pairs(const ParticleSpan& p);
   void note_motion(const Motion& seen);
+  [[nodiscard]] bool places_are_finite() const;
   void choose_time_step();
   [[nodiscard]] bool reinitialisation_due(std::uint64_t step) const;
 
@@ -483,11 +484,19 @@ void Engine<T>::reinitialise() {
 }
 
 template <typename T>
+bool Engine<T>::places_are_finite() const {
+  for (std::size_t s = 0; s < layout.slots(); ++s) {
+    if (particles.id[s] >= 0.0 && !particles.position(s).allFinite()) return false;
+  }
+  return true;
+}
+
+template <typename T>
 void Engine<T>::note_motion(const Motion& seen) {
   extremes.max_speed = std::sqrt(seen.speed_sq);
   extremes.min_density_excess = particle_count > 0 ? seen.min_density_excess : 0.0;
   extremes.max_density_excess = particle_count > 0 ? seen.max_density_excess : 0.0;
-  extremes.finite = seen.finite;
+  extremes.finite = seen.finite && (!seen.outside || places_are_finite());
   if (method.integrator == Integrator::kick_drift_kick) {
     extremes.max_acceleration = std::sqrt(seen.acceleration_sq);
   }

@@ -65,16 +65,20 @@ SolverState Solver::state() const {
   return out;
 }
 
-double Solver::offending_particle_id() const {
+double Solver::suspect_id(Suspect suspect) const {
   const Particles& p = impl_->particles;
-  double worst = -1.0;
+  const auto guilt = [&](std::size_t s) {
+    if (suspect == Suspect::fastest) return p.velocity(s).squaredNorm();
+    return suspect == Suspect::densest ? p.density_excess[s] : -p.density_excess[s];
+  };
+  double most = -std::numeric_limits<double>::infinity();
   double id = -1.0;
   for (std::size_t s = 0; s < p.size(); ++s) {
     if (p.id[s] < 0.0) continue;
     const double sum = p.x[s] + p.y[s] + p.velocity(s).squaredNorm() + p.density_excess[s];
     if (!std::isfinite(sum)) return p.id[s];
-    if (p.velocity(s).squaredNorm() > worst) {
-      worst = p.velocity(s).squaredNorm();
+    if (guilt(s) > most) {
+      most = guilt(s);
       id = p.id[s];
     }
   }

@@ -41,6 +41,9 @@ struct Extremes {
                                      ///< that finds lists long enough for more than 200, else 0
 };
 
+/// Which particle a guard asks for.
+enum class Suspect { fastest, lightest, densest };
+
 /// Kinetic, potential and internal energy of the fluid, J per metre of depth; potential against y =
 /// 0.
 struct Energy {
@@ -87,8 +90,8 @@ class Solver {
 
   /// A copy of the state, particles in their order.
   [[nodiscard]] SolverState state() const;
-  /// Id of a particle that is not finite, else of the fastest.
-  [[nodiscard]] double offending_particle_id() const;
+  /// Id of a particle that is not finite, else of the suspect; -1 without particles.
+  [[nodiscard]] double suspect_id(Suspect suspect) const;
 
   /// Energy now. Sums run in particle order.
   [[nodiscard]] Energy energy() const;

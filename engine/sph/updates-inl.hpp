@@ -239,7 +239,8 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     const V x = at(p.x, s);
     const V y = at(p.y, s);
     const V rho = at(p.density_excess, s);
-    speed_sq = hn::Max(speed_sq, hn::IfThenElseZero(used, vx * vx + vy * vy));
+    const V v_sq = vx * vx + vy * vy;
+    speed_sq = hn::Max(speed_sq, hn::IfThenElseZero(used, v_sq));
     low = hn::Min(low, hn::IfThenElse(used, rho, low));
     high = hn::Max(high, hn::IfThenElse(used, rho, high));
     const auto inside =
@@ -248,9 +249,8 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     const auto beside = hn::Or(x<rim_left, x> rim_right);
     const auto kept = hn::AndNot(hn::And(y >= top, beside), inside);
     outside = hn::Or(outside, hn::AndNot(kept, used));
-    // False for a NaN as well.
-    const auto sound =
-        hn::Abs(x) + hn::Abs(y) + hn::Abs(vx) + hn::Abs(vy) + hn::Abs(rho) < hn::Set(d, 1e300);
+    // False for a NaN as well. A place that is not finite is outside.
+    const auto sound = v_sq + hn::Abs(rho) < hn::Set(d, 1e300);
     broken = hn::Or(broken, hn::AndNot(sound, used));
   }
   Motion seen;

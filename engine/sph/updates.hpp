@@ -49,7 +49,7 @@ struct Motion {
   double max_density_excess = -1e300;
   bool strayed = false;  ///< a particle is off its track by more than the leeway
   bool outside = false;  ///< a particle is to be retired
-  bool finite = true;
+  bool finite = true;    ///< velocities and densities are; a place that is not is outside
 
   void merge(const Motion& other) {
     speed_sq = std::max(speed_sq, other.speed_sq);

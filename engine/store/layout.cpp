@@ -174,11 +174,9 @@ void series_list(Archive& archive, Subject& list) {
 template <class Archive, class Subject>
 void guard_baselines(Archive& archive, Subject& guards) {
   archive.group("/guards");
-  archive.attribute("/guards", "initial_energy", guards.initial_energy);
-  archive.attribute("/guards", "energy_scale", guards.energy_scale);
-  archive.attribute("/guards", "highest_energy", guards.highest_energy);
-  archive.attribute("/guards", "initial_mass", guards.initial_mass);
-  archive.attribute("/guards", "max_speed_seen", guards.max_speed_seen);
+  for (const GuardNumber& number : kGuardNumbers) {
+    archive.attribute("/guards", std::string(number.name), guards.*number.member);
+  }
 }
 
 template <class Archive, class Subject>

@@ -19,7 +19,7 @@ struct Format {
   std::string_view name;
   std::uint64_t version;
 };
-inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 2};
+inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 3};
 inline constexpr Format kSeriesFormat{"sluice-series", 1};
 inline constexpr Format kFrameFormat{"sluice-frame", 1};
 

@@ -98,12 +98,10 @@ void require_sound(const Checkpoint& checkpoint, StorageFault fault) {
   rules.require_finite("time_step", checkpoint.solver.time_step);
   require_particles(rules, checkpoint.integrator, checkpoint.solver.particles);
   require_retired(rules, checkpoint.solver.retired);
-  const GuardBaselines& guards = checkpoint.guards;
-  rules.require_finite("guard baseline initial_energy", guards.initial_energy);
-  rules.require_finite("guard baseline energy_scale", guards.energy_scale);
-  rules.require_finite("guard baseline highest_energy", guards.highest_energy);
-  rules.require_finite("guard baseline initial_mass", guards.initial_mass);
-  rules.require_finite("guard baseline max_speed_seen", guards.max_speed_seen);
+  for (const GuardNumber& number : kGuardNumbers) {
+    rules.require_finite(fmt::format("guard number {}", number.name),
+                         checkpoint.guards.*number.member);
+  }
   require_sound(checkpoint.series, fault);
 }
 

@@ -122,6 +122,14 @@ Json conservation_json(const Conservation& kept) {
               {"share_of_mass_that_left", value_of(kept.lost_mass)}};
 }
 
+Json extremes_json(const RunFacts& facts) {
+  return Json{{"max_speed_m_per_s", value_of(facts.max_speed)},
+              {"min_density_ratio", value_of(facts.min_density_ratio)},
+              {"max_density_ratio", value_of(facts.max_density_ratio)},
+              {"min_time_step_s", value_of(facts.min_time_step)},
+              {"max_neighbours", value_of(facts.max_neighbours)}};
+}
+
 Json left_out_json(const Scene& scene) {
   Json all = Json::array();
   const Plan parts = plan(scene);
@@ -162,6 +170,7 @@ Json report_json(const Report& report) {
   object["error"] = value_of(report.error());
   object["cost"] = cost_json(report.facts);
   object["conservation"] = conservation_json(report.conservation);
+  object["extremes"] = extremes_json(report.facts);
   object["left_out"] = left_out_json(report.scene);
   object["outcome"] = report.outcome;
   return object;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include "engine/run/guards.hpp"
 #include "engine/scene/plan.hpp"
+#include "engine/sph/crowding.hpp"
 #include "engine/study/report_tables.hpp"
 
 namespace sluice {
@@ -15,6 +17,12 @@ std::optional<double> ratio(const std::optional<double>& value, const std::optio
 
 std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.3g} %", 100.0 * *share) : "-";
+}
+
+/// They are counted only where the lists say that they may be more.
+std::string neighbours_text(const std::optional<double>& most) {
+  if (!most) return "-";
+  return *most > 0.0 ? brief(*most, 6) : fmt::format("at most {}", kManyNeighbours);
 }
 
 Table sensor_table(const Report& report) {
@@ -70,6 +78,7 @@ Table pass_table(const RunFacts& facts) {
 Table conservation_table(const Report& report) {
   const Conservation& kept = report.conservation;
   const RunFacts& facts = report.facts;
+  const GuardLimits limits = GuardLimits::for_method(report.scene.method);
   const auto drift = [&](const std::optional<double>& energy) -> std::optional<double> {
     if (!energy || !kept.first_energy) return std::nullopt;
     return ratio(*energy - *kept.first_energy, kept.energy_scale);
@@ -90,7 +99,15 @@ Table conservation_table(const Report& report) {
                              brief(facts.leaked, 12)),
                  "1 % leaked"},
                 {"highest speed over sound speed",
-                 cell(ratio(facts.max_speed, report.scene.method.sound_speed)), "1"}};
+                 cell(ratio(facts.max_speed, report.scene.method.sound_speed)),
+                 brief(limits.speed / report.scene.method.sound_speed, 3)},
+                {"lowest density over reference", cell(facts.min_density_ratio, 4),
+                 brief(limits.density_ratio_min, 3)},
+                {"highest density over reference", cell(facts.max_density_ratio, 4),
+                 brief(limits.density_ratio_max, 3)},
+                {"shortest step, s", brief(facts.min_time_step, 4), brief(limits.time_step, 4)},
+                {"most neighbours of a particle", neighbours_text(facts.max_neighbours),
+                 brief(limits.neighbours, 4)}};
   return table;
 }
 

@@ -83,6 +83,10 @@ RunFacts run_facts(const Json& outcome) {
   facts.overtopped = number_in(outcome, "/retired/overtopped");
   facts.leaked = number_in(outcome, "/retired/leaked");
   facts.max_speed = number_in(outcome, "/extremes/max_speed");
+  facts.min_density_ratio = number_in(outcome, "/extremes/min_density_ratio");
+  facts.max_density_ratio = number_in(outcome, "/extremes/max_density_ratio");
+  facts.min_time_step = number_in(outcome, "/extremes/min_time_step");
+  facts.max_neighbours = number_in(outcome, "/extremes/max_neighbours");
   facts.initial_energy = number_in(outcome, "/extremes/initial_energy");
   facts.highest_energy = number_in(outcome, "/extremes/highest_energy");
   facts.energy_scale = number_in(outcome, "/extremes/energy_scale");

@@ -28,7 +28,9 @@ struct RunFacts {
   std::optional<double>
       particle_steps_per_second;  ///< of the last attempt, per second of wall time
   std::vector<PassCost> passes;
-  std::optional<double> max_speed, initial_energy, highest_energy, energy_scale;
+  std::optional<double> max_speed, min_density_ratio, max_density_ratio, min_time_step,
+      max_neighbours;
+  std::optional<double> initial_energy, highest_energy, energy_scale;
   std::string physics_digest;
   std::vector<std::pair<std::string, std::string>> series_digests;
 };

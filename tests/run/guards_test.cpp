@@ -34,7 +34,9 @@ StepFacts calm() {
   facts.energy = 100.0;
   facts.baselines.initial_energy = 100.0;
   facts.baselines.energy_scale = 50.0;
-  facts.offending_particle = [] { return 17.0; };
+  facts.suspect_id = [](Suspect suspect) {
+    return suspect == Suspect::fastest ? 17.0 : suspect == Suspect::densest ? 18.0 : 19.0;
+  };
   return facts;
 }
 
@@ -180,6 +182,15 @@ TEST(EnergyScale, OfAFluidAtRestWithoutGravityIsNotZero) {
   method.gravity = Vec::Zero();
   const GuardBaselines base = initial_baselines(method, state, Energy{});
   EXPECT_DOUBLE_EQ(base.energy_scale, 0.5 * method.particle_mass() * 0.24 * 0.24);
+}
+
+TEST(Diagnosis, NamesTheParticleOfTheDensityThatIsWrong) {
+  StepFacts facts = calm();
+  facts.extremes.max_density_excess = 400.0;
+  EXPECT_EQ(failure(facts)->particle, 18.0);
+  facts = calm();
+  facts.extremes.min_density_excess = -400.0;
+  EXPECT_EQ(failure(facts)->particle, 19.0);
 }
 
 TEST(Diagnosis, TellsStepTimeParticleValueLimitAndWhatToDo) {

@@ -229,17 +229,39 @@ TEST(NotANumber, IsReportedAtTheStartAndAfterAStep) {
     fluid.v[4] = {std::numeric_limits<double>::quiet_NaN(), 0.0};
     Solver solver(method_of(integrator), start_from(fluid), {}, {});
     EXPECT_FALSE(solver.extremes().finite);
-    EXPECT_EQ(solver.offending_particle_id(), 4.0);
+    EXPECT_EQ(solver.suspect_id(Suspect::fastest), 4.0);
     solver.step();
     EXPECT_FALSE(solver.extremes().finite) << name_of(integrator);
   }
 }
 
-TEST(NotANumber, OffendingIsTheFastestWhileAllAreFinite) {
+TEST(NotANumber, IsFoundInAPlaceAndInADensity) {
+  for (const auto field : {&Particles::x, &Particles::y, &Particles::density_excess}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      Fluid fluid;
+      for (int k = 0; k < 6; ++k) fluid.add({0.1 * k, 0.0});
+      SolverState state = start_from(fluid);
+      (state.particles.*field)[3] = bad;
+      const Solver solver(method_of(Integrator::kick_drift_kick), state, {}, {});
+      EXPECT_FALSE(solver.extremes().finite);
+      // A density that is none spoils its neighbours' velocities at once.
+      if (field != &Particles::density_excess) {
+        EXPECT_EQ(solver.suspect_id(Suspect::densest), 3.0);
+      }
+    }
+  }
+}
+
+TEST(NotANumber, SuspectIsTheFastestLightestOrDensestWhileAllAreFinite) {
   Fluid fluid;
   for (int k = 0; k < 6; ++k) fluid.add({0.3 * k - 1.0, 0.0}, {0.0, k == 2 ? -3.0 : 1.0});
-  const Solver solver(method_of(Integrator::modified_leap_frog), start_from(fluid), {}, {});
-  EXPECT_EQ(solver.offending_particle_id(), 2.0);
+  SolverState state = start_from(fluid);
+  state.particles.density_excess = {0.0, 1.0, 2.0, 9.0, -4.0, 3.0};
+  const Solver solver(method_of(Integrator::modified_leap_frog), state, {}, {});
+  EXPECT_EQ(solver.suspect_id(Suspect::fastest), 2.0);
+  EXPECT_EQ(solver.suspect_id(Suspect::densest), 3.0);
+  EXPECT_EQ(solver.suspect_id(Suspect::lightest), 4.0);
 }
 
 TEST(EmptySlots, NeverLeakIntoWhatReadersSee) {

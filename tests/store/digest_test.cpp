@@ -75,11 +75,7 @@ TEST(PhysicsDigest, ChangesWithEveryBitOfEveryNumber) {
     flip(series.weight);
     flip(series.next_index);
   }
-  GuardBaselines& guards = checkpoint.guards;
-  for (double* number : {&guards.initial_energy, &guards.energy_scale, &guards.highest_energy,
-                         &guards.initial_mass, &guards.max_speed_seen}) {
-    flip(*number);
-  }
+  for (const GuardNumber& number : kGuardNumbers) flip(checkpoint.guards.*number.member);
   EXPECT_EQ(digests.size(), changes);
   EXPECT_GT(changes, 3000U);
 }

@@ -94,7 +94,7 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
   checkpoint.solver.retired = {{3.0, RetireCause::overtopped, 11, 0.011, 1.5, 0.61},
                                {5.0, RetireCause::leaked, 12, 0.012, -0.1, -0.0}};
   checkpoint.series = make_series_list();
-  checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0};
+  checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0, -60.0, 70.0, 80.0, 90.0};
   checkpoint.next_frame = 4;
   return checkpoint;
 }

@@ -111,6 +111,21 @@ TEST(Report, TellsWhatShareOfTheMassLeft) {
   EXPECT_DOUBLE_EQ(*report.conservation.lost_mass, 0.1);
 }
 
+TEST(Report, HoldsWhatTheGuardsSawAgainstTheirLimits) {
+  auto outcome = outcome_of(400, 12.0);
+  outcome["extremes"] = {{"max_speed", 2.0},
+                         {"min_density_ratio", 0.93},
+                         {"max_density_ratio", 1.07},
+                         {"min_time_step", 2.5e-5},
+                         {"max_neighbours", 0}};
+  const Report report = make_report(scene_of_no_experiment(), {}, outcome);
+  const std::string text = report_text(report);
+  for (const char* part : {"0.9300", "1.070", "2.5e-05", "at most 200"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in:\n" << text;
+  }
+  EXPECT_EQ(report_json(report)["extremes"]["min_density_ratio"], 0.93);
+}
+
 TEST(Report, SumsTheKindsOfEnergy) {
   Series energy;
   energy.name = "energy";
