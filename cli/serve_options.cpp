@@ -56,7 +56,8 @@ void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
       ->check(CLI::NonNegativeNumber)
       ->group(group);
   verb.add_option("--stalled-seconds", limits.stalled_seconds,
-                  "A worker without progress for so long is ended and its job tried again")
+                  "A worker without progress for so long, not counting waits for a core, is ended "
+                  "and its job tried again")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);

@@ -52,7 +52,7 @@ Attempt::Attempt(Job job, const WorkerCommand& command, double now)
       process_(command),
       log_(command.folder, head_line(job_)),
       started_(now),
-      progressed_(now) {}
+      stalled_(now) {}
 
 std::vector<WorkerMessage> Attempt::read(double now) {
   std::vector<WorkerMessage> messages;
@@ -94,12 +94,12 @@ void Attempt::take(WorkerMessage message, double now, std::vector<WorkerMessage>
   if (begins(message.event)) {
     listens_ = true;
     // What came before the first step, such as reading a checkpoint, is progress, but only once.
-    if (!step_) progressed_ = now;
+    if (!step_) stalled_.restart(now);
     if (std::exchange(checkpoint_wanted_, false)) process_.send(SIGUSR1);
   }
   if (message.step && (!step_ || *message.step > *step_)) {
     step_ = message.step;
-    progressed_ = now;
+    stalled_.restart(now);
   }
   if (!message.text.empty()) last_words_ = message.text;
   if (ends(message.event)) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "service/attempt_end.hpp"
+#include "service/core_use.hpp"
 #include "service/job.hpp"
 #include "service/line_reader.hpp"
 #include "service/worker_log.hpp"
@@ -34,8 +35,8 @@ class Attempt {
   [[nodiscard]] std::optional<std::string> progress_due(double now);
 
   [[nodiscard]] double age(double now) const { return now - started_; }
-  /// Seconds without a further step.
-  [[nodiscard]] double stalled_for(double now) const { return now - progressed_; }
+  /// Seconds without a further step, as StallClock counts them; `use` is of its worker.
+  double stalled_for(double now, const CoreUse& use) { return stalled_.look(now, use); }
 
   /// True once every `interval` seconds: when to look how much of the disk the job takes.
   [[nodiscard]] bool disk_look_due(double now, double interval);
@@ -70,7 +71,7 @@ class Attempt {
   bool errors_are_open_ = true;
 
   double started_;
-  double progressed_;
+  StallClock stalled_;
   std::optional<std::uint64_t> step_;
   std::optional<std::string> progress_;
   double next_progress_ = 0.0;

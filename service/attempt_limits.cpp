@@ -16,12 +16,16 @@ void watch_disk(Attempt& attempt, const ServiceLimits& limits, double now) {
 
 }  // namespace
 
-void hold_to_limits(Attempt& attempt, const ServiceLimits& limits, double now) {
+void hold_to_limits(Attempt& attempt, const ServiceLimits& limits, const SchedulerSenses& senses) {
+  const double now = senses.clock();
   if (attempt.stop_cause() != StopCause::none) {
     if (attempt.stopping_for(now) > limits.stop_seconds) attempt.kill(attempt.stop_cause());
     return;
   }
-  if (attempt.stalled_for(now) > limits.stalled_seconds) return attempt.kill(StopCause::stalled);
+  const CoreUse use = senses.core_use(attempt.process().pid());
+  if (attempt.stalled_for(now, use) > limits.stalled_seconds) {
+    return attempt.kill(StopCause::stalled);
+  }
   const double longest = limits.wall_seconds_per_attempt;
   if (longest > 0.0 && attempt.age(now) > longest) attempt.stop(StopCause::wall_limit, now);
   watch_disk(attempt, limits, now);

@@ -20,7 +20,7 @@ struct ServiceLimits {
   std::uint64_t memory_per_job = 0;          ///< bytes; 0: three quarters of the machine's
   std::uint64_t disk_per_job = 20ULL << 30;  ///< bytes
   double wall_seconds_per_attempt = 0.0;     ///< 0: none
-  double stalled_seconds = 60.0;             ///< without progress: the worker is ended
+  double stalled_seconds = 60.0;             ///< without progress (StallClock): the worker is ended
   double stop_seconds = 45.0;  ///< a worker that was asked to stop is killed after that
   int crash_limit = 3;
   std::uint64_t disk_reserve =

@@ -129,7 +129,7 @@ void SchedulerLoop::tick() {
   conclusions_.retry();
   look_after_orphans();
   watch_disk();
-  for (Attempt& attempt : attempts_) hold_to_limits(attempt, limits_, senses_.clock());
+  for (Attempt& attempt : attempts_) hold_to_limits(attempt, limits_, senses_);
   delete_old_jobs_when_due();
   next_tick_ = senses_.clock() + (orphans_.empty() ? kTick : kOrphanTick);
 }

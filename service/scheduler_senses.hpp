@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "service/core_use.hpp"
 #include "service/disk_guard.hpp"
 
 namespace sluice {
@@ -19,6 +20,8 @@ struct SchedulerSenses {
   };
   /// Bytes that may still be written on the disk of a folder.
   std::function<std::uint64_t(const std::filesystem::path&)> free_disk = sluice::free_disk;
+  /// What a worker has had of the cores, and whether it wants more.
+  std::function<CoreUse(pid_t)> core_use = sluice::core_use;
 };
 
 }  // namespace sluice

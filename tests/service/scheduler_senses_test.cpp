@@ -24,13 +24,14 @@ open(OUT, ">", "outcome.json");
 print OUT "{\"state\":\"completed\",\"exit_code\":0,\"reason\":\"\",\"end_time\":0.1}";
 ')";
 
-/// A machine whose time and disk are what the test says.
+/// A machine whose time, cores and disk are what the test says.
 class SchedulerSensesThread : public ::testing::Test {
  protected:
   void start() {
     SchedulerSenses senses;
     senses.clock = [this] { return time_.load(); };
     senses.free_disk = [this](const std::filesystem::path&) { return free_.load(); };
+    senses.core_use = [this](pid_t) { return CoreUse{core_seconds_.load(), runnable_.load()}; };
     scheduler_.emplace(store_, data_.path(), limits_, write_worker(data_, kUntilReleased), senses);
   }
   void pass(double seconds) {
@@ -63,6 +64,8 @@ class SchedulerSensesThread : public ::testing::Test {
   ServiceLimits limits_ = limits_for_scripts();
   std::atomic<double> time_ = 1000.0;
   std::atomic<std::uint64_t> free_ = std::uint64_t{1} << 40;
+  std::atomic<double> core_seconds_ = 0.0;
+  std::atomic<bool> runnable_ = false;
   std::optional<Scheduler> scheduler_;
 };
 
@@ -105,6 +108,23 @@ TEST_F(SchedulerSensesThread, EndsAnAttemptAfterAMinuteWithoutProgressAndNotBefo
   wait_for_a_round(job);
   EXPECT_EQ(state_of(job), JobState::running);
   pass(5.0);
+  const std::string reason = wait_for(store_, job.id, JobState::failed).reason;
+  EXPECT_NE(reason.find("no progress"), std::string::npos) << reason;
+}
+
+TEST_F(SchedulerSensesThread, AWorkerThatStandsInLineForACoreIsNotTakenForStuck) {
+  limits_.crash_limit = 1;
+  const Job job = add_real_job(store_, data_);
+  start();
+  wait_for_start(job);
+  wait_until("its progress", [&] { return !store_.find(job.id)->progress.empty(); });
+  runnable_ = true;
+  core_seconds_ = 50.0;
+  pass(1000.0);
+  wait_for_a_round(job);
+  EXPECT_EQ(state_of(job), JobState::running);
+  core_seconds_ = 70.0;
+  pass(1000.0);
   const std::string reason = wait_for(store_, job.id, JobState::failed).reason;
   EXPECT_NE(reason.find("no progress"), std::string::npos) << reason;
 }
