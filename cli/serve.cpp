@@ -14,6 +14,7 @@
 #include "service/api.hpp"
 #include "service/rebuild.hpp"
 #include "service/service_log.hpp"
+#include "service/time_slice.hpp"
 
 namespace sluice {
 namespace {
@@ -86,6 +87,8 @@ void bound_memory() {
 
 void serve(ServeOptions& options) {
   bound_memory();
+  // Before any thread starts: requests are answered while workers fill all cores.
+  ask_for_slices(kShortestSlice);
   // First, so that no thread or child starts before the actions are set.
   const StopSignals signals;
   if (!options.token_file.empty()) options.http.guard.token = read_token_file(options.token_file);

@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <csignal>
 
+#include "service/time_slice.hpp"
+
 namespace sluice {
 namespace {
 
@@ -89,7 +91,7 @@ void set_limits(const ChildLaunch& launch) {
   limit(launch, RLIMIT_NOFILE, Sandbox::kDescriptorLimit);
 }
 
-/// Both are wishes: a system that refuses them still runs the worker.
+/// All are wishes: a system that refuses them still runs the worker.
 void step_back() {
   const int file = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (file >= 0) {
@@ -97,6 +99,7 @@ void step_back() {
     ::close(file);
   }
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNiceness));
+  ask_for_slices(0);  // not the service's short ones
 }
 
 void execute(const ChildLaunch& launch) {
