@@ -13,11 +13,20 @@ constexpr double kTile = 512.0;           // smoothing lengths
 constexpr std::size_t kBlock = 1024;      // particles or cells to a task
 constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
 
-// A large chunk has few neighbours in other chunks; its sums should stay in the second cache, and
-// several threads need several chunks.
+// A large chunk has few neighbours in other chunks, all the fewer the more strips it spans; its sums
+// should stay in the second cache, and several threads need several chunks.
 constexpr std::size_t kLeastChunks = 8;
+constexpr std::size_t kManyChunks = 64;  // where chunks may grow beyond kChunk
 constexpr std::size_t kLeastChunk = 32;  // clusters
-constexpr std::size_t kMostChunk = 512;  // clusters
+constexpr std::size_t kChunk = 512;
+constexpr std::size_t kMostChunk = 2048;
+
+/// Clusters per chunk of so many clusters.
+std::size_t chunk_of(std::size_t clusters) {
+  const std::size_t few = std::clamp(clusters / kLeastChunks, kLeastChunk, kChunk);
+  const std::size_t many = std::min(clusters / kManyChunks, kMostChunk);
+  return std::max(few, many) / kWholeVectors * kWholeVectors;
+}
 
 }  // namespace
 
@@ -110,8 +119,7 @@ Layout sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const do
   }
   layout.strip_begin.push_back(static_cast<std::uint32_t>(layout.source.size() / kCluster));
   fill_cluster(kCluster * kWholeVectors);
-  const std::size_t part = layout.clusters() / kLeastChunks / kWholeVectors * kWholeVectors;
-  layout.chunk = std::clamp(part, kLeastChunk, kMostChunk);
+  layout.chunk = chunk_of(layout.clusters());
   return layout;
 }
 
