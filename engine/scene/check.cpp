@@ -135,10 +135,16 @@ void check_work(const Scene& scene, Problems& problems) {
 }
 
 void check_wall_drag(const Scene& scene, Problems& problems) {
-  if (!scene.method.wall_friction || !scene.method.physical_viscosity) return;
-  problems.add("/numerics/wall_friction",
-               "stands beside physical_viscosity, which holds the fluid at walls already; remove "
-               "one of the two");
+  const Method& m = scene.method;
+  const auto refuse = [&](std::string_view key, std::string_view other) {
+    problems.add(fmt::format("/numerics/{}", key),
+                 fmt::format("stands beside {}, which holds the fluid at walls already; remove one "
+                             "of the two",
+                             other));
+  };
+  if (m.wall_friction && m.physical_viscosity) refuse("wall_friction", "physical_viscosity");
+  if (m.wall_friction && m.wall_drag) refuse("wall_friction", "wall_drag");
+  if (m.wall_drag && m.physical_viscosity) refuse("wall_drag", "physical_viscosity");
 }
 
 /// A scheme whose errors fill the flow within the run is refused; slower growth is only told.

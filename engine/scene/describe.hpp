@@ -178,6 +178,14 @@ void describe(Archive& a, PhysicalViscosity& term) {
 }
 
 template <class Archive>
+void describe(Archive& a, WallDrag& term) {
+  a.number("coefficient", term.coefficient,
+           {.about = "skin friction coefficient: stress at the wall over rho v^2/2; 0.004 is a "
+                     "smooth wall's, more stands for walls in front and behind as well",
+            .range = from(0, 1)});
+}
+
+template <class Archive>
 void describe(Archive& a, Reinitialisation& term) {
   a.integer("interval", term.interval,
             {.about = "steps from one reinitialisation to the next", .range = from(1, 1e6)});
@@ -198,10 +206,15 @@ void describe_numerics(Archive& a, Method& method) {
             {.about = "artificial viscosity Pi_ij between fluid particles, eq. 8",
              .otherwise = "no viscosity"});
   a.section("wall_friction", method.wall_friction,
-            {.about = "Pi_ij of eq. 8 against walls at rest; not beside physical_viscosity",
+            {.about = "Pi_ij of eq. 8 against walls at rest; not beside physical_viscosity or "
+                      "wall_drag",
              .otherwise = "free slip"});
   a.section("physical_viscosity", method.physical_viscosity,
             {.about = "viscous stress in the fluid, no slip at walls", .otherwise = "none"});
+  a.section("wall_drag", method.wall_drag,
+            {.about = "stress at walls that grows with the square of the speed; not beside "
+                      "physical_viscosity",
+             .otherwise = "none"});
   a.word("wall_pressure", kWallPressureWords, method.wall_pressure,
          {.about = "pressure of the walls' dummy particles, eq. 9"});
   a.section("reinitialisation", method.reinitialisation,

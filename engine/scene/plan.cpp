@@ -42,16 +42,19 @@ void plan_walls(const Scene& scene, const Lists& passes) {
   const std::string about = fmt::format("wall pressure of eq. 9, {}",
                                         word_for(kWallPressureWords, scene.method.wall_pressure));
   constexpr std::string_view kFriction = "viscosity of eq. 8 against walls";
+  constexpr std::string_view kDrag = "stress at walls that grows with the square of the speed";
   constexpr std::string_view kGate = "dummy particles of the lifted gate";
   if (!has_walls(scene)) {
     passes.leave_out("wall_pressure", about, "no key tank and no key obstacles");
     passes.leave_out("wall_friction", kFriction, "no walls to rub on");
+    passes.leave_out("wall_drag", kDrag, "no walls to rub on");
     passes.leave_out("gate", kGate, "no key gate");
     return;
   }
   passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
   passes.either(scene.method.wall_friction.has_value(), "wall_friction", kFriction,
                 "numerics.wall_friction");
+  passes.either(scene.method.wall_drag.has_value(), "wall_drag", kDrag, "numerics.wall_drag");
   passes.either(scene.gate.has_value(), "gate", kGate, "gate");
 }
 

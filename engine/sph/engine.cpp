@@ -37,6 +37,22 @@ bool keeps_diffused(const Method& method) {
   return method.diffusion && method.diffusion->kind == DiffusionKind::fourtakas;
 }
 
+/// The stress that a viscous stress puts on fluid sliding along a wall, over 2 rho_0 nu |v|/h, on a
+/// lattice that goes on in the wall: (dx/h)^3 sum n slope(R^2), for in n rows of fluid there is a
+/// row of the wall n dx below.
+double stress_across_wall(const Method& m) {
+  const double dx = m.spacing / m.smoothing_length;
+  const int reach = static_cast<int>(m.support_ratio() / dx) + 1;
+  double sum = 0.0;
+  for (int n = 1; n <= reach; ++n) {
+    for (int along = -reach; along <= reach; ++along) {
+      const double r_sq = dx * dx * static_cast<double>(n * n + along * along);
+      if (r_sq < m.support_ratio() * m.support_ratio()) sum += n * kernel_slope(m.kernel, r_sq);
+    }
+  }
+  return dx * dx * dx * sum;
+}
+
 /// Lengths in m.
 template <typename T>
 TermConstants<T> term_constants(const Method& m, double tile_size) {
@@ -55,6 +71,10 @@ TermConstants<T> term_constants(const Method& m, double tile_size) {
     k.friction_epsilon = static_cast<T>(m.wall_friction->epsilon);
   }
   k.two_nu = static_cast<T>(m.scaled_two_nu());
+  if (m.wall_drag) {
+    k.wall_two_nu_by_speed =
+        static_cast<T>(m.wall_drag->coefficient / (2.0 * stress_across_wall(m)));
+  }
   const Vec gravity = m.gravity * m.smoothing_length / (m.sound_speed * m.sound_speed);
   k.gravity_x = static_cast<T>(gravity.x());
   k.gravity_y = static_cast<T>(gravity.y());

@@ -83,11 +83,6 @@ void find_rates(SheetWave& w) {
 
 }  // namespace
 
-double kernel_slope(KernelKind kind, double r_sq) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope(r_sq)
-                                                : WendlandC2::slope(r_sq);
-}
-
 double SheetWave::kick_drift_kick_radius(double courant) const {
   MatrixXcd density(kRows, 3 * kRows);
   density << courant * divergence, MatrixXcd::Identity(kRows, kRows) - courant * diffusion;

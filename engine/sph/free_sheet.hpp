@@ -29,7 +29,4 @@ struct SheetWave {
 /// between.
 [[nodiscard]] std::vector<SheetWave> sheet_waves(const Method& method, double approaching);
 
-/// slope(R^2) of the kernel that a method names (kernel.hpp).
-[[nodiscard]] double kernel_slope(KernelKind kind, double r_sq);
-
 }  // namespace sluice

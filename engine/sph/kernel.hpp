@@ -45,6 +45,11 @@ struct WendlandC2 {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value(r_sq)
                                                 : WendlandC2::value(r_sq);
 }
+/// slope(R^2) of the kernel that a method names.
+[[nodiscard]] inline double kernel_slope(KernelKind kind, double r_sq) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope(r_sq)
+                                                : WendlandC2::slope(r_sq);
+}
 
 /// The constant of slope(R^2).
 [[nodiscard]] inline double kernel_slope_scale(KernelKind kind) {

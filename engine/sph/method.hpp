@@ -54,6 +54,12 @@ struct PhysicalViscosity {
   double nu = 1e-6;  ///< kinematic viscosity, m^2/s
 };
 
+/// Wall law: the stress Cf/2 rho_0 |v| v of a turbulent boundary layer too thin to be resolved. It
+/// depends on neither the particle distance nor any scale of the flow.
+struct WallDrag {
+  double coefficient = 0.01;  ///< skin friction coefficient Cf, dimensionless
+};
+
 /// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,
 /// and go row by row as the lower edge passes them. Nothing of it is state: it follows from t.
 struct LiftedWall {
@@ -92,7 +98,8 @@ struct Method {
   std::optional<DensityDiffusion> diffusion;
   std::optional<ArtificialViscosity> viscosity;
   std::optional<WallFriction> wall_friction;
-  std::optional<PhysicalViscosity> physical_viscosity;  ///< not beside wall_friction
+  std::optional<PhysicalViscosity> physical_viscosity;
+  std::optional<WallDrag> wall_drag;  ///< at most one of these three
   std::optional<Reinitialisation> reinitialisation;
   WallPressure wall_pressure = WallPressure::extrapolated;
   std::optional<LiftedWall> lifted_wall;

@@ -177,8 +177,9 @@ HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, const 
 /// Who gets the sums of a list: the particles i, or both of a pair.
 enum class Share { i_alone, both };
 
-/// What holds the fluid back at walls: nothing, eq. 8, or a stress that acts in the fluid as well.
-enum class Drag { none, wall_friction, physical_viscosity };
+/// What holds the fluid back at walls: nothing, eq. 8, a stress that acts in the fluid as well, or
+/// a wall law.
+enum class Drag { none, wall_friction, physical_viscosity, wall_drag };
 
 /// Which terms a rate sweep sums.
 enum class Sums { density, acceleration, both };
@@ -190,6 +191,7 @@ struct Terms {
   static constexpr bool viscosity = acceleration && kViscosity;
   static constexpr bool friction = acceleration && kDrag == Drag::wall_friction;
   static constexpr bool physical = acceleration && kDrag == Drag::physical_viscosity;
+  static constexpr bool wall_drag = acceleration && kDrag == Drag::wall_drag;
   static constexpr SumBlocks blocks = !acceleration ? kDensitySums
                                       : !density    ? kAccelerationSums
                                                     : kRateSums;
@@ -198,7 +200,7 @@ struct Terms {
 /// What the rate sums need of the particles i of a vector, and the sums.
 template <class V>
 struct RateOfI {
-  V u, v, density, half, volume, diffused, stress;
+  V u, v, speed, density, half, volume, diffused, stress;
   V density_sum, x_sum, y_sum;
 };
 
@@ -208,6 +210,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
                           const TileShift<T>& shift, V x_i, V y_i,
                           const ArtificialViscosityTerm<T>& viscosity,
                           const PhysicalViscosityTerm<T>& physical,
+                          const WallDragTerm<T>& wall_drag,
                           const DensityDiffusionTerm<T>& diffusion, RateOfI<V>& i, T* sums) {
   const typename Blocks<T>::D d;
   const auto body = [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t part) HWY_ATTR {
@@ -241,6 +244,10 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
         x_j = hn::NegMulAdd(g, physical.summand(d, i.u, load_j(other.u + j)), x_j);
         y_j = hn::NegMulAdd(g, physical.summand(d, i.v, load_j(other.v + j)), y_j);
       }
+      if constexpr (Terms::wall_drag && kShare == Share::i_alone) {
+        x_j = hn::NegMulAdd(g, wall_drag.summand(d, i.speed, i.u), x_j);
+        y_j = hn::NegMulAdd(g, wall_drag.summand(d, i.speed, i.v), y_j);
+      }
       i.x_sum = i.x_sum + x_j;
       i.y_sum = i.y_sum + y_j;
     }
@@ -258,7 +265,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
   for_each_pair(list, c, other, shift, x_i, y_i, body);
 }
 
-/// eqs. 4, 5, 7, 8 and the viscous stress for the clusters of a chunk.
+/// eqs. 4, 5, 7, 8, the viscous stress and the wall law for the clusters of a chunk.
 template <class Shape, class Terms, typename T>
 void sum_rates(const SweepTask<T>& task) {
   using B = Blocks<T>;
@@ -271,6 +278,7 @@ void sum_rates(const SweepTask<T>& task) {
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon};
   const PhysicalViscosityTerm<T> physical{k.two_nu};
+  const WallDragTerm<T> wall_drag{k.wall_two_nu_by_speed};
   std::fill_n(task.sums, Terms::blocks.stride * task.to_fluid->places(), T{});
 
   for (std::size_t c = 0; c < task.clusters; ++c) {
@@ -288,15 +296,16 @@ void sum_rates(const SweepTask<T>& task) {
       if constexpr (Terms::density) i.volume = load_i(self.volume + slot);
       if constexpr (Terms::diffusion) i.diffused = load_i(self.diffused + slot);
       if constexpr (Terms::acceleration) i.stress = load_i(self.stress + slot);
+      if constexpr (Terms::wall_drag) i.speed = hn::Sqrt(hn::MulAdd(i.u, i.u, i.v * i.v));
       i.density_sum = i.x_sum = i.y_sum = hn::Zero(d);
 
       add_rates<Shape, Terms, Terms::viscosity, Share::both>(*task.to_fluid, c, task.fluid, shift,
                                                              x_i, y_i, viscosity, physical,
-                                                             diffusion, i, task.sums);
+                                                             wall_drag, diffusion, i, task.sums);
       if (task.to_wall != nullptr) {
-        add_rates<Shape, Terms, Terms::friction, Share::i_alone>(*task.to_wall, c, task.wall, shift,
-                                                                 x_i, y_i, friction, physical,
-                                                                 wall_diffusion, i, task.sums);
+        add_rates<Shape, Terms, Terms::friction, Share::i_alone>(
+            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, physical, wall_drag,
+            wall_diffusion, i, task.sums);
       }
       T* const sums = task.sums + Terms::blocks.stride * c + part;
       if constexpr (Terms::density) add_lanes(i.density_sum, sums + Terms::blocks.density);
@@ -448,6 +457,9 @@ typename Sweeps<T>::Sweep select_rates(const Method& m) {
   const auto with = [&]<bool kDiffusion, bool kViscosity>() -> typename Sweeps<T>::Sweep {
     if (m.wall_friction) {
       return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_friction>, T>;
+    }
+    if (m.wall_drag) {
+      return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_drag>, T>;
     }
     return m.physical_viscosity
                ? &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::physical_viscosity>,

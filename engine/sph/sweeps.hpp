@@ -19,6 +19,7 @@ struct TermConstants {
   T viscosity_alpha{}, viscosity_epsilon{1};
   T friction_alpha{}, friction_epsilon{1};
   T two_nu{};
+  T wall_two_nu_by_speed{};
   T gravity_x{}, gravity_y{};
   T tile_size{};  ///< in h
 };

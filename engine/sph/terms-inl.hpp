@@ -97,6 +97,20 @@ struct PhysicalViscosityTerm {
   }
 };
 
+/// Wall law: the stress Cf/2 rho_0 |v| v on fluid that slides along a wall at rest, summed as the
+/// viscous stress above against the wall's particles, with the nu_i = Cf |v_i| h/(4 S) that makes
+/// the sum over wall and fluid that stress; S is stress_across_wall() of engine.cpp.
+template <typename T>
+struct WallDragTerm {
+  T two_nu_by_speed;  ///< 2 nu_i/(c h) over |v_i|/c
+
+  /// Summand before -g, for one component of the velocity.
+  template <class D, class V>
+  HWY_INLINE V summand(D d, V speed_i, V velocity_i) const {
+    return hn::Set(d, two_nu_by_speed) * speed_i * velocity_i;
+  }
+};
+
 /// Wall pressure, eq. 9: (sum_f p_f W + sum_f rho_f f . (x_w - x_f) W) / sum_f W. Summand before W,
 /// in units of rho_0 c^2.
 template <typename T>

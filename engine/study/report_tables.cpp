@@ -158,6 +158,8 @@ std::string scheme_text(const Scene& scene) {
     text += fmt::format(", wall friction alpha {:g}", method.wall_friction->alpha);
   } else if (method.physical_viscosity) {
     text += fmt::format(", nu {:g} m^2/s and no slip", method.physical_viscosity->nu);
+  } else if (method.wall_drag) {
+    text += fmt::format(", wall drag Cf {:g}", method.wall_drag->coefficient);
   } else if (scene.tank || !scene.obstacles.empty()) {
     text += ", free slip";
   }

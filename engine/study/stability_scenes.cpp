@@ -56,7 +56,7 @@ Json scheme_of(const Json& scene) {
 Json with_scheme(Json scene, const Json& scheme) {
   scene.merge_patch(scheme);
   if (scene.contains("tank")) return scene;
-  for (const char* wall_term : {"wall_pressure", "wall_friction"}) {
+  for (const char* wall_term : {"wall_pressure", "wall_friction", "wall_drag"}) {
     scene["numerics"].erase(wall_term);
   }
   return scene;

@@ -18,6 +18,7 @@ using nlohmann::json;
 using ::testing::AllOf;
 using testing::base_scene;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
 using testing::parsed;
@@ -59,7 +60,7 @@ TEST(Plan, RunsWhatASceneNames) {
   text["sensors"] = json::parse(R"([{"name": "e", "kind": "energy", "interval": 0.1}])");
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   const Plan p = plan(parsed(text));
-  EXPECT_THAT(names(p.passes_left_out), ::testing::ElementsAre("physical_viscosity"))
+  EXPECT_THAT(names(p.passes_left_out), ElementsAre("physical_viscosity", "wall_drag"))
       << "which may not stand beside wall_friction";
   EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
   EXPECT_EQ(reason(p.passes, "gate"), "key gate");
@@ -67,14 +68,19 @@ TEST(Plan, RunsWhatASceneNames) {
   text["numerics"]["physical_viscosity"] = json::object();
   EXPECT_EQ(reason(plan(parsed(text)).passes, "physical_viscosity"),
             "key numerics.physical_viscosity");
+  text["numerics"].erase("physical_viscosity");
+  text["numerics"]["wall_drag"] = json::object();
+  EXPECT_EQ(reason(plan(parsed(text)).passes, "wall_drag"), "key numerics.wall_drag");
 }
 
-TEST(Plan, LeavesOutWallFrictionWhereThereIsNoWall) {
+TEST(Plan, LeavesOutWhatHoldsAtWallsWhereThereIsNoWall) {
   json text = testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}});
-  text["numerics"]["wall_friction"] = json::object();
-  const Plan p = plan(parsed(text));
-  EXPECT_THAT(names(p.passes), Not(Contains("wall_friction")));
-  EXPECT_THAT(names(p.passes_left_out), Contains("wall_friction"));
+  for (const char* term : {"wall_friction", "wall_drag"}) {
+    text["numerics"] = {{term, json::object()}};
+    const Plan p = plan(parsed(text));
+    EXPECT_THAT(names(p.passes), Not(Contains(term)));
+    EXPECT_THAT(names(p.passes_left_out), Contains(term));
+  }
 }
 
 TEST(Plan, NamesEachFieldOnceAsItsIntegratorCarriesIt) {

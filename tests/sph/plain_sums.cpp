@@ -30,6 +30,21 @@ double diffused_difference(const Method& m, double rho_i, double rho_j, const Ve
   return rho_j - rho_i + m.reference_density * m.gravity.dot(x_ij) / c_sq;
 }
 
+/// The nu with which the viscous stress between a lattice of fluid that slides at `speed` and the
+/// lattice of the wall below is Cf/2 rho_0 speed^2: each row of fluid against each of the wall.
+double wall_law_nu(const Method& m, double speed) {
+  const double dx = m.spacing;
+  double sum = 0.0;
+  for (int row = 0; row < 6; ++row) {
+    for (int wall_row = 1; wall_row <= 6; ++wall_row) {
+      for (int along = -6; along <= 6; ++along) {
+        sum += smoothing_slope(m, dx * std::hypot(row + wall_row, along));
+      }
+    }
+  }
+  return m.wall_drag->coefficient * speed / (4.0 * dx * dx * dx * sum);
+}
+
 }  // namespace
 
 double smoothing(const Method& m, double r) {
@@ -85,7 +100,7 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
     // mu_i = mu_j = rho_0 nu, and the volumes of the viscous stress are those at rho_0.
     const double rest_volume = m.spacing * m.spacing;
     const auto add = [&](const Vec& x_j, const Vec& v_j, double rho_j, double p_j, double pi_ij,
-                         bool diffuses) {
+                         bool diffuses, double nu) {
       const Vec x_ij = fluid.x[i] - x_j;
       const Vec grad_W = -smoothing_slope(m, x_ij.norm()) * x_ij;
       const double volume_j = mass / rho_j;
@@ -102,15 +117,15 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
       }
       a += force;
       a_size += force.norm();
-      if (m.physical_viscosity) {
-        // x_ij . grad W / |x_ij|^2 = -slope, also where x_ij = 0.
-        const Vec drag = -2.0 * m.physical_viscosity->nu * rest_volume *
-                         smoothing_slope(m, x_ij.norm()) * (fluid.v[i] - v_j);
-        a += drag;
-        a_size += drag.norm();
-      }
+      // x_ij . grad W / |x_ij|^2 = -slope, also where x_ij = 0.
+      const Vec drag =
+          -2.0 * nu * rest_volume * smoothing_slope(m, x_ij.norm()) * (fluid.v[i] - v_j);
+      a += drag;
+      a_size += drag.norm();
       d_rho += rate;
     };
+    const double nu = m.physical_viscosity ? m.physical_viscosity->nu : 0.0;
+    const double wall_nu = m.wall_drag ? wall_law_nu(m, fluid.v[i].norm()) : nu;
     for (std::size_t j = 0; j < fluid.size(); ++j) {
       if (j == i) continue;
       const double rho_j = m.reference_density + fluid.excess[j];
@@ -118,7 +133,7 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
           m.viscosity ? viscous_pressure(m.viscosity->alpha, m.viscosity->epsilon, m, rho_i, rho_j,
                                          fluid.v[i] - fluid.v[j], fluid.x[i] - fluid.x[j])
                       : 0.0;
-      add(fluid.x[j], fluid.v[j], rho_j, c * c * fluid.excess[j], pi_ij, true);
+      add(fluid.x[j], fluid.v[j], rho_j, c * c * fluid.excess[j], pi_ij, true, nu);
     }
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const double rho_w = wall_density(m, wall_pressure[w]);
@@ -127,7 +142,7 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
                                              rho_i, rho_w, fluid.v[i], fluid.x[i] - walls[w])
                           : 0.0;
       const bool diffuses = m.diffusion && m.diffusion->kind == DiffusionKind::molteni_colagrossi;
-      add(walls[w], Vec::Zero(), rho_w, wall_pressure[w], pi_iw, diffuses);
+      add(walls[w], Vec::Zero(), rho_w, wall_pressure[w], pi_iw, diffuses, wall_nu);
     }
     out.acceleration.push_back(a);
     out.density.push_back(d_rho);

@@ -28,7 +28,7 @@ struct PlainRates {
   double density_size = 1e-300;       ///< kg/(m^3 s)
 };
 
-/// eqs. 4, 5, 7, 8 and the physical viscosity with the given wall pressures.
+/// eqs. 4, 5, 7, 8 the physical viscosity and the wall law with the given wall pressures.
 [[nodiscard]] PlainRates plain_rates(const Method& m, const Fluid& fluid,
                                      const std::vector<Vec>& walls,
                                      const std::vector<double>& wall_pressure);

@@ -19,7 +19,7 @@ double tolerance(Precision precision) { return precision == Precision::mixed ? 1
 
 std::vector<Method> all_combinations_of_terms(KernelKind kernel) {
   std::vector<Method> methods;
-  for (int mask = 0; mask < 3 * 24; ++mask) {
+  for (int mask = 0; mask < 4 * 24; ++mask) {
     Method m = full_method();
     m.reinitialisation.reset();
     m.kernel = kernel;
@@ -32,6 +32,7 @@ std::vector<Method> all_combinations_of_terms(KernelKind kernel) {
     const int drag = rest / 8;
     if (drag != 1) m.wall_friction.reset();
     if (drag == 2) m.physical_viscosity = PhysicalViscosity{0.3};
+    if (drag == 3) m.wall_drag = WallDrag{0.2};
     methods.push_back(m);
   }
   return methods;
@@ -54,7 +55,8 @@ std::string describe(const Method& m, const std::string& target) {
          (m.diffusion ? std::to_string(static_cast<int>(m.diffusion->kind)) : "none") +
          ", viscosity " + std::to_string(m.viscosity.has_value()) + ", friction " +
          std::to_string(m.wall_friction.has_value()) + ", physical viscosity " +
-         std::to_string(m.physical_viscosity.has_value()) + ", gravity " +
+         std::to_string(m.physical_viscosity.has_value()) + ", wall drag " +
+         std::to_string(m.wall_drag.has_value()) + ", gravity " +
          std::to_string(!m.gravity.isZero()) + ", walls clamped " +
          std::to_string(m.wall_pressure == WallPressure::clamped);
 }

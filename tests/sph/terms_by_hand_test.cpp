@@ -217,6 +217,52 @@ TEST(PhysicalViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
   EXPECT_NEAR(middle.y(), 0.0, 1e-9);
 }
 
+TEST(WallDragTerm, ActsAgainstWallsOnly) {
+  Method m = plain_method();
+  m.wall_drag = WallDrag{0.1};
+  Fluid fluid;
+  fluid.add({1.0, 1.0}, {1.0, 0.0}, 0.0);
+  fluid.add({1.0 + kH, 1.0}, {-1.0, 3.0}, 0.0);
+  const auto rates = rates_at_start(m, fluid, {{0.0, 0.0}});
+  EXPECT_EQ(rates.acceleration[0].norm(), 0.0);
+  EXPECT_EQ(rates.acceleration[1].norm(), 0.0);
+}
+
+/// Stress on a layer of fluid that slides along a wall at `speed`, from one column of particles.
+double stress_at_wall(const Method& m, double speed) {
+  Fluid fluid;
+  std::vector<Vec> walls;
+  for (int row = 0; row < 5; ++row) {
+    for (int column = -5; column <= 5; ++column) {
+      const Vec place = m.spacing * Vec(column, row + 0.5);
+      fluid.add(place, {speed, 0.0}, 0.0);
+      walls.emplace_back(place.x(), -place.y());
+    }
+  }
+  const auto rates = rates_at_start(m, fluid, walls);
+  double force = 0.0;
+  for (std::size_t i = 5; i < fluid.size(); i += 11) {
+    force -= m.particle_mass() * rates.acceleration[i].x();
+    EXPECT_EQ(rates.acceleration[i].y(), 0.0);
+  }
+  return force / m.spacing;
+}
+
+TEST(WallDragTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
+  for (const KernelKind kernel : {KernelKind::truncated_gaussian, KernelKind::wendland_c2}) {
+    for (const double spacing : {kH / 1.5, kH / 1.2}) {
+      Method m = plain_method();
+      m.kernel = kernel;
+      m.spacing = spacing;
+      m.wall_drag = WallDrag{0.1};
+      for (const double speed : {0.5, 3.0}) {
+        const double stress = 0.1 / 2.0 * kRho0 * speed * speed;
+        EXPECT_NEAR(stress_at_wall(m, speed), stress, 1e-12 * stress);
+      }
+    }
+  }
+}
+
 /// Wall pressures at the start.
 std::vector<double> wall_pressures(Method m, const Fluid& fluid, const std::vector<Vec>& walls) {
   m.integrator = Integrator::kick_drift_kick;
