@@ -45,6 +45,7 @@ struct WendlandC2 {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value(r_sq)
                                                 : WendlandC2::value(r_sq);
 }
+
 /// slope(R^2) of the kernel that a method names.
 [[nodiscard]] inline double kernel_slope(KernelKind kind, double r_sq) {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope(r_sq)

@@ -13,8 +13,8 @@ constexpr double kTile = 512.0;           // smoothing lengths
 constexpr std::size_t kBlock = 1024;      // particles or cells to a task
 constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
 
-// A large chunk has few neighbours in other chunks, all the fewer the more strips it spans; its sums
-// should stay in the second cache, and several threads need several chunks.
+// A large chunk has few neighbours in other chunks, all the fewer the more strips it spans; its
+// sums should stay in the second cache, and several threads need several chunks.
 constexpr std::size_t kLeastChunks = 8;
 constexpr std::size_t kManyChunks = 64;  // where chunks may grow beyond kChunk
 constexpr std::size_t kLeastChunk = 32;  // clusters

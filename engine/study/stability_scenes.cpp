@@ -27,7 +27,7 @@ Json recommended_scheme() {
             {"precision", "mixed"},
             {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
             {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}}},
-            {"wall_friction", {{"alpha", 0.02}, {"epsilon", 0.01}}},
+            {"wall_drag", {{"coefficient", 0.01}}},
             {"wall_pressure", "clamped"}}}};
 }
 

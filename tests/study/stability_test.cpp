@@ -216,18 +216,21 @@ TEST(StabilityScenes, SchemesAreThoseOfTheExamples) {
     std::ifstream file(std::string(SLUICE_SOURCE_DIR) + "/schemas/examples/" + name);
     return scheme_of(nlohmann::json::parse(file));
   };
-  EXPECT_EQ(recommended_scheme(), example("still-water.json"));
+  for (const char* name :
+       {"dambreak.json", "dambreak-quick.json", "still-water.json", "martin-moyce.json"}) {
+    EXPECT_EQ(recommended_scheme(), example(name)) << name;
+  }
   EXPECT_EQ(paper_scheme(), example("dambreak-paper.json"));
 }
 
 TEST(StabilityScenes, WithoutATankTheSchemesWallTermsAreLeftOut) {
   const nlohmann::json drop =
       with_scheme(in_space("drop", circle(Vec::Zero(), 1.0), 0.1, 10.0, 1.0), recommended_scheme());
-  EXPECT_FALSE(drop["numerics"].contains("wall_friction"));
+  EXPECT_FALSE(drop["numerics"].contains("wall_drag"));
   EXPECT_EQ(drop["resolution"], (nlohmann::json{{"spacing", 0.1}, {"smoothing_ratio", 1.5}}));
   EXPECT_TRUE(parse_scene(drop.dump()).scene.has_value());
   const nlohmann::json tank = with_scheme(still_water("tank", {}), recommended_scheme());
-  EXPECT_TRUE(tank["numerics"].contains("wall_friction"));
+  EXPECT_TRUE(tank["numerics"].contains("wall_drag"));
   EXPECT_TRUE(parse_scene(tank.dump()).scene.has_value());
 }
 
