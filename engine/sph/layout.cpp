@@ -54,8 +54,12 @@ std::size_t Grid::cell(double distance, double size, std::size_t count) {
 }
 
 Grid::Tile Grid::tile(const Vec& position) const {
-  const Vec n = ((position - tile_origin_) / tile_size_).array().floor().max(-1e6).min(1e6);
-  return {static_cast<int>(n.x()), static_cast<int>(n.y())};
+  // A place that is not a number is somewhere too.
+  const auto index = [](double n) {
+    return n > -1e6 ? static_cast<int>(std::floor(std::min(n, 1e6))) : -1'000'000;
+  };
+  const Vec n = (position - tile_origin_) / tile_size_;
+  return {index(n.x()), index(n.y())};
 }
 
 Vec Grid::tile_center(Tile tile) const {
