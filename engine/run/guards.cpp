@@ -9,6 +9,8 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/sph/crowding.hpp"
+
 namespace sluice {
 namespace {
 
@@ -135,9 +137,10 @@ GuardLimits GuardLimits::for_method(const Method& method) {
   limits.speed_warning = 0.3 * method.sound_speed;
   const double usual_step = method.smoothing_length / method.sound_speed;
   limits.time_step = 0.05 * usual_step * std::min(1.0, method.courant / 0.25);
-  // 200 is seven times what the paper's support holds; wider supports get the same margin.
+  // Fewer are never counted. That is seven times what the paper's support holds; wider supports get
+  // the same margin.
   const double in_support = std::numbers::pi * std::pow(method.support() / method.spacing, 2);
-  limits.neighbours = std::max(200.0, 7.0 * in_support);
+  limits.neighbours = std::max<double>(kManyNeighbours, 7.0 * in_support);
   limits.reference_density = method.reference_density;
   return limits;
 }

@@ -16,14 +16,13 @@ namespace {
 constexpr double kEnd = 0.8;     // A t, with A = 1/s and R = 1 m
 constexpr double kSound = 15.0;  // m/s
 
-/// Root mean square of y, m.
-double extent(const Particles& particles) {
-  double sum = 0.0;
-  for (const double y : particles.y) sum += y * y;
-  return std::sqrt(sum / static_cast<double>(particles.size()));
-}
-
 }  // namespace
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum / static_cast<double>(values.size());
+}
 
 double drop_stretch(double a_t) {
   constexpr int kSteps = 1000;
@@ -44,8 +43,8 @@ DropRun run_drop(StabilityBench& bench, int per_radius) {
                  {}};
   if (!result.run.completed() || !result.run.last) return result;
   const SolverState& end = result.run.last->solver;
-  const double at_start = extent(create_particles(result.run.scene).state.particles);
-  result.point = DropPoint{1.0 / per_radius, extent(end.particles) / at_start,
+  const double at_start = mean_square(create_particles(result.run.scene).state.particles.y);
+  result.point = DropPoint{1.0 / per_radius, std::sqrt(mean_square(end.particles.y) / at_start),
                            drop_stretch(end.time), static_cast<double>(end.particles.size())};
   return result;
 }

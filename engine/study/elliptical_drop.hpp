@@ -11,6 +11,10 @@
 
 namespace sluice {
 
+/// Of a coordinate of the particles of an ellipse about the origin: a quarter of its semi-axis
+/// squared.
+[[nodiscard]] double mean_square(const std::vector<double>& values);
+
 /// Semi-axis along y over the radius, at the time A t, of a round drop that starts with
 /// v = A (-x, y): it stays an ellipse of the same area and, since nothing acts on it, keeps its
 /// kinetic energy, so that s'^2 (1 + s^-4) = 2 A^2 (Monaghan, J. Comput. Phys. 110 (1994) 399).

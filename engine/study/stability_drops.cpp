@@ -16,12 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-double mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return sum / static_cast<double>(values.size());
-}
-
 CaseResult elliptical_drop(StabilityBench& bench) {
   const DropRun drop = run_drop(bench, bench.pick(15, 40));
   CaseResult result = result_of(drop.run, Verdict::stable, Verdict::stable_with_warnings);
