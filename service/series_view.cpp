@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -108,15 +109,27 @@ void keep_extremes(const Series& series, Span span, std::size_t column,
   }
 }
 
-void append_number(fmt::memory_buffer& out, double value, std::string_view missing) {
-  if (std::isfinite(value)) {
-    fmt::format_to(std::back_inserter(out), FMT_COMPILE("{}"), value);
-  } else {
-    out.append(missing);
-  }
+/// The most that a double takes, as in -2.2250738585072014e-308, and what parts it from the next.
+constexpr std::size_t kLongestNumber = 25;
+
+/// Empty, but takes the numbers of a series without growing.
+std::string room_for(const Series& series) {
+  std::string out;
+  out.reserve(512 + kLongestNumber * (series.columns.size() + 2) * series.size());
+  return out;
 }
 
-void append_array(fmt::memory_buffer& out, const std::vector<double>& values, std::size_t first,
+void append_number(std::string& out, double value, std::string_view missing) {
+  if (!std::isfinite(value)) {
+    out.append(missing);
+    return;
+  }
+  std::array<char, kLongestNumber> digits{};
+  const auto* const end = fmt::format_to(digits.data(), FMT_COMPILE("{}"), value);
+  out.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
+}
+
+void append_array(std::string& out, const std::vector<double>& values, std::size_t first,
                   std::size_t stride) {
   out.push_back('[');
   for (std::size_t n = first; n < values.size(); n += stride) {
@@ -126,7 +139,7 @@ void append_array(fmt::memory_buffer& out, const std::vector<double>& values, st
   out.push_back(']');
 }
 
-void append_optional(fmt::memory_buffer& out, const std::optional<double>& value) {
+void append_optional(std::string& out, const std::optional<double>& value) {
   append_number(out, value.value_or(std::nan("")), "null");
 }
 
@@ -180,12 +193,12 @@ SeriesView make_view(const Series& raw, const SeriesQuery& query, SeriesState st
 std::string csv_text(const SeriesView& view, const SeriesQuery& query) {
   const Series& series = view.series;
   const std::size_t width = series.columns.size();
-  fmt::memory_buffer out;
-  out.append(std::string_view(query.divisors ? "time" : "time_s"));
+  std::string out = room_for(series);
+  out.append(query.divisors ? "time" : "time_s");
   for (const Series::Column& column : series.columns) {
     fmt::format_to(std::back_inserter(out), ",{}", column.name);
   }
-  out.append(std::string_view(",weight\n"));
+  out.append(",weight\n");
   for (std::size_t n = 0; n < series.size(); ++n) {
     append_number(out, series.time[n], "");
     for (std::size_t c = 0; c < width; ++c) {
@@ -196,12 +209,12 @@ std::string csv_text(const SeriesView& view, const SeriesQuery& query) {
     append_number(out, series.weight[n], "");
     out.push_back('\n');
   }
-  return fmt::to_string(out);
+  return out;
 }
 
 std::string json_text(const SeriesView& view, const SeriesQuery& query) {
   const Series& series = view.series;
-  fmt::memory_buffer out;
+  std::string out = room_for(series);
   const auto put = std::back_inserter(out);
   fmt::format_to(put, R"({{"name":"{}","kind":"{}","filter":"{}","tau":)", series.name, series.kind,
                  query.tau ? "gaussian" : "none");
@@ -211,17 +224,17 @@ std::string json_text(const SeriesView& view, const SeriesQuery& query) {
   fmt::format_to(put, R"(,"samples":{},"decimated":{},"time_unit":"{}","time":)", view.samples,
                  view.samples != series.size(), query.divisors ? "1" : "s");
   append_array(out, series.time, 0, 1);
-  out.append(std::string_view(R"(,"columns":[)"));
+  out.append(R"(,"columns":[)");
   for (std::size_t c = 0; c < series.columns.size(); ++c) {
     fmt::format_to(put, R"({}{{"name":"{}","unit":"{}","values":)", c == 0 ? "" : ",",
                    series.columns[c].name, series.columns[c].unit);
     append_array(out, series.values, c, series.columns.size());
     out.push_back('}');
   }
-  out.append(std::string_view(R"(],"weight":)"));
+  out.append(R"(],"weight":)");
   append_array(out, series.weight, 0, 1);
-  out.append(std::string_view("}\n"));
-  return fmt::to_string(out);
+  out.append("}\n");
+  return out;
 }
 
 }  // namespace sluice

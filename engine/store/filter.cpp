@@ -15,26 +15,6 @@ double duration_of(const Series& series, std::size_t n) {
   return series.size() > 1 ? series.duration[1] : 1.0;
 }
 
-struct Sums {
-  double value = 0.0;   ///< sum of v_n exp(-R^2) Dt_n
-  double weight = 0.0;  ///< sum of exp(-R^2) Dt_n, s
-};
-
-Sums sum_window(const Series& series, std::size_t column, double tau, std::size_t m,
-                std::size_t first) {
-  Sums sums;
-  for (std::size_t n = first; n < series.size(); ++n) {
-    const double ratio = (series.time[n] - series.time[m]) / tau;
-    if (ratio >= kFilterReach) break;
-    const double value = series.values[n * series.columns.size() + column];
-    if (std::isnan(value)) continue;
-    const double weight = std::exp(-ratio * ratio) * duration_of(series, n);
-    sums.value += weight * value;
-    sums.weight += weight;
-  }
-  return sums;
-}
-
 void require_filter_arguments(const Series& series, double tau, std::size_t column) {
   if (!(tau > 0.0) || !std::isfinite(tau)) {
     throw std::invalid_argument(
@@ -50,18 +30,35 @@ void require_filter_arguments(const Series& series, double tau, std::size_t colu
 
 Filtered gaussian_filter(const Series& series, double tau, std::size_t column) {
   require_filter_arguments(series, tau, column);
-  Filtered filtered;
-  filtered.value.reserve(series.size());
-  filtered.weight.reserve(series.size());
+  const std::size_t count = series.size();
+  const auto value = [&](std::size_t n) {
+    return series.values[n * series.columns.size() + column];
+  };
+  // The sums above and below the line, until the last loop.
+  Filtered filtered{std::vector<double>(count), std::vector<double>(count)};
+  const auto add = [&](std::size_t m, std::size_t n, double kernel) {
+    if (std::isnan(value(n))) return;
+    const double weight = kernel * duration_of(series, n);
+    filtered.value[m] += weight * value(n);
+    filtered.weight[m] += weight;
+  };
+  // One exponential serves a pair both ways; each sample still sums the others in their order.
+  for (std::size_t m = 0; m < count; ++m) {
+    add(m, m, 1.0);
+    for (std::size_t n = m + 1; n < count; ++n) {
+      const double ratio = (series.time[n] - series.time[m]) / tau;
+      if (ratio >= kFilterReach) break;
+      const double kernel = std::exp(-ratio * ratio);
+      add(n, m, kernel);
+      add(m, n, kernel);
+    }
+  }
   const double unit_integral = std::sqrt(std::numbers::pi) * tau;
-  std::size_t first = 0;
-  for (std::size_t m = 0; m < series.size(); ++m) {
-    while ((series.time[m] - series.time[first]) / tau >= kFilterReach) ++first;
-    const Sums sums = sum_window(series, column, tau, m, first);
-    const bool wet = sums.weight > 0.0;
-    filtered.value.push_back(wet ? sums.value / sums.weight
-                                 : std::numeric_limits<double>::quiet_NaN());
-    filtered.weight.push_back(wet ? sums.weight / unit_integral : 0.0);
+  for (std::size_t m = 0; m < count; ++m) {
+    const double weight = filtered.weight[m];
+    const bool wet = weight > 0.0;
+    filtered.value[m] = wet ? filtered.value[m] / weight : std::numeric_limits<double>::quiet_NaN();
+    filtered.weight[m] = wet ? weight / unit_integral : 0.0;
   }
   return filtered;
 }
