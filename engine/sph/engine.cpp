@@ -103,6 +103,7 @@ class Engine final : public Solver::Impl {
          const Execution& exec);
 
   void step() override;
+  [[nodiscard]] Energy energy() override;
   [[nodiscard]] std::vector<double> wall_pressures() const override;
   [[nodiscard]] double pair_lanes() const override;
   [[nodiscard]] std::size_t memory_bytes() const override;
@@ -144,9 +145,9 @@ class Engine final : public Solver::Impl {
   [[nodiscard]] ParticleSpan span(std::size_t chunk);
   [[nodiscard]] PairScales scales() const;
 
-  /// Calls body(chunk, seen) for the span of every chunk and merges what each saw.
-  template <class Body>
-  Motion for_chunks(const Body& body);
+  /// Calls body(chunk, seen) for the span of every chunk and merges what each saw, in their order.
+  template <class Seen = Motion, class Body>
+  Seen for_chunks(const Body& body);
   template <class Body>
   Motion update_chunks(const Body& body);
   /// Calls body(block) for parts of a chunk that stay in the first cache from loop to loop.
@@ -254,12 +255,12 @@ ParticleSpan Engine<T>::span(std::size_t chunk) {
 }
 
 template <typename T>
-template <class Body>
-Motion Engine<T>::for_chunks(const Body& body) {
-  std::vector<Motion> seen(layout.chunks());
+template <class Seen, class Body>
+Seen Engine<T>::for_chunks(const Body& body) {
+  std::vector<Seen> seen(layout.chunks());
   team_.run(seen.size(), [&](std::size_t chunk) { body(span(chunk), seen[chunk]); });
-  Motion all;
-  for (const Motion& m : seen) all.merge(m);
+  Seen all;
+  for (const Seen& one : seen) all.merge(one);
   return all;
 }
 
@@ -520,6 +521,7 @@ void Engine<T>::note_motion(const Motion& seen) {
   if (method.integrator == Integrator::kick_drift_kick) {
     extremes.max_acceleration = std::sqrt(seen.acceleration_sq);
   }
+  extremes.max_x = seen.max_x;
   outside_ = seen.outside;
 }
 
@@ -635,6 +637,12 @@ void Engine<T>::step_kick_drift_kick() {
 }
 
 // For readers.
+
+template <typename T>
+Energy Engine<T>::energy() {
+  return for_chunks<Energy>(
+      [&](const ParticleSpan& p, Energy& sum) { sweeps_.updates.sum_energy(p, method, sum); });
+}
 
 template <typename T>
 std::vector<double> Engine<T>::wall_pressures() const {

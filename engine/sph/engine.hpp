@@ -18,6 +18,7 @@ class Solver::Impl {
  public:
   virtual ~Impl() = default;
   virtual void step() = 0;
+  [[nodiscard]] virtual Energy energy() = 0;
 
   Method method;
   Execution execution;

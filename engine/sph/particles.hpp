@@ -100,4 +100,19 @@ struct SolverState {
   std::vector<Retired> retired;
 };
 
+/// Of the fluid, J per metre of depth: kinetic m v^2/2, potential -m f . x, and internal
+/// m c^2 (ln(rho/rho_0) + rho_0/rho - 1), the integral of p/rho^2 of the linear equation of state.
+struct Energy {
+  double kinetic = 0.0;
+  double potential = 0.0;
+  double internal = 0.0;
+
+  [[nodiscard]] double total() const { return kinetic + potential + internal; }
+  void merge(const Energy& other) {
+    kinetic += other.kinetic;
+    potential += other.potential;
+    internal += other.internal;
+  }
+};
+
 }  // namespace sluice

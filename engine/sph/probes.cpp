@@ -8,42 +8,6 @@
 #include "engine/sph/kernel.hpp"
 
 namespace sluice {
-namespace {
-
-/// ln(1 + s) - s/(1 + s) = s^2/2 - 2 s^3/3 + 3 s^4/4 - ... The series is quicker and, since the two
-/// nearly cancel, more exact where the fluid is hardly compressed: its rest is below 1e-15 of it.
-double compression(double s) {
-  if (std::abs(s) > 0.02) return std::log1p(s) - s / (1.0 + s);
-  constexpr int kTerms = 9;
-  double sum = 0.0;
-  for (int k = kTerms + 1; k >= 2; --k) sum = static_cast<double>(k - 1) / k - s * sum;
-  return s * s * sum;
-}
-
-}  // namespace
-
-Energy total_energy(const Method& method, const Particles& particles) {
-  Energy sum;
-  const double mass = method.particle_mass();
-  const double c_sq = method.sound_speed * method.sound_speed;
-  for (std::size_t s = 0; s < particles.size(); ++s) {
-    if (particles.id[s] < 0.0) continue;
-    const double excess = particles.density_excess[s] / method.reference_density;
-    sum.kinetic += 0.5 * mass * particles.velocity(s).squaredNorm();
-    sum.potential -= mass * method.gravity.dot(particles.position(s));
-    sum.internal += mass * c_sq * compression(excess);
-  }
-  return sum;
-}
-
-Probe front(const Method& method, const Particles& particles) {
-  double largest = -std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < particles.size(); ++s) {
-    if (particles.id[s] >= 0.0) largest = std::max(largest, particles.x[s]);
-  }
-  if (!std::isfinite(largest)) return {};
-  return {largest + 0.5 * method.spacing, 1.0};
-}
 
 template <class Body>
 void FluidProbe::for_each_in(const Box& box, const Body& body) const {

@@ -7,14 +7,6 @@
 
 namespace sluice {
 
-/// Kinetic energy m v^2/2, potential energy -m f . x, and internal energy m c^2 (ln(rho/rho_0) +
-/// rho_0/rho - 1), which is the integral of p/rho^2 of the linear equation of state. Summed in
-/// particle order.
-[[nodiscard]] Energy total_energy(const Method& method, const Particles& particles);
-
-/// Largest x of the fluid plus half a spacing; weight 0 without particles.
-[[nodiscard]] Probe front(const Method& method, const Particles& particles);
-
 /// Values of the fluid at a point, from the particles around it. Finds them by the order in memory.
 class FluidProbe {
  public:

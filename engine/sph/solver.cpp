@@ -85,7 +85,7 @@ double Solver::suspect_id(Suspect suspect) const {
   return id;
 }
 
-Energy Solver::energy() const { return total_energy(impl_->method, impl_->particles); }
+Energy Solver::energy() const { return impl_->energy(); }
 
 Probe Solver::pressure_at(const Vec& point, double h) const {
   return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds)
@@ -97,7 +97,10 @@ Probe Solver::surface_height_at(double x) const {
       .surface_height(x);
 }
 
-Probe Solver::surge_front() const { return front(impl_->method, impl_->particles); }
+Probe Solver::surge_front() const {
+  if (impl_->particle_count == 0) return {};
+  return {impl_->extremes.max_x + 0.5 * impl_->method.spacing, 1.0};
+}
 
 double Solver::distance_to_fluid(const Vec& point) const {
   return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds).distance(point);

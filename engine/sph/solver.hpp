@@ -36,6 +36,7 @@ struct Extremes {
   double max_acceleration = 0.0;     ///< m/s^2
   double min_density_excess = 0.0;   ///< kg/m^3
   double max_density_excess = 0.0;   ///< kg/m^3
+  double max_x = 0.0;                ///< m
   bool finite = true;                ///< no NaN and no infinity in position, velocity and density
   std::uint32_t max_neighbours = 0;  ///< of one particle, counted at a sort
                                      ///< that finds lists long enough for more than 200, else 0
@@ -43,15 +44,6 @@ struct Extremes {
 
 /// Which particle a guard asks for.
 enum class Suspect { fastest, lightest, densest };
-
-/// Kinetic, potential and internal energy of the fluid, J per metre of depth; potential against y =
-/// 0.
-struct Energy {
-  double kinetic = 0.0;
-  double potential = 0.0;
-  double internal = 0.0;
-  [[nodiscard]] double total() const { return kinetic + potential + internal; }
-};
 
 /// A value estimated from the fluid around a point, with the kernel sum that carried it.
 struct Probe {
@@ -93,7 +85,7 @@ class Solver {
   /// Id of a particle that is not finite, else of the suspect; -1 without particles.
   [[nodiscard]] double suspect_id(Suspect suspect) const;
 
-  /// Energy now. Sums run in particle order.
+  /// Energy now. Summed in the order of particles in memory.
   [[nodiscard]] Energy energy() const;
   /// eq. 11 with smoothing length `h`, Pa.
   [[nodiscard]] Probe pressure_at(const Vec& point, double h) const;

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -225,6 +226,7 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   V speed_sq = hn::Zero(d);
   V low = hn::Set(d, 1e300);
   V high = hn::Set(d, -1e300);
+  V front = hn::Set(d, -1e300);
   auto outside = hn::FirstN(d, 0);
   auto broken = hn::FirstN(d, 0);
   // As Method::keeps.
@@ -243,6 +245,7 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     speed_sq = hn::Max(speed_sq, hn::IfThenElseZero(used, v_sq));
     low = hn::Min(low, hn::IfThenElse(used, rho, low));
     high = hn::Max(high, hn::IfThenElse(used, rho, high));
+    front = hn::Max(front, hn::IfThenElse(used, x, front));
     const auto inside =
         hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
                 hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
@@ -257,6 +260,7 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   seen.speed_sq = hn::GetLane(hn::MaxOfLanes(d, speed_sq));
   seen.min_density_excess = hn::GetLane(hn::MinOfLanes(d, low));
   seen.max_density_excess = hn::GetLane(hn::MaxOfLanes(d, high));
+  seen.max_x = hn::GetLane(hn::MaxOfLanes(d, front));
   seen.outside = !hn::AllFalse(d, outside);
   seen.finite = hn::AllFalse(d, broken);
   out.merge(seen);
@@ -288,6 +292,54 @@ void measure_rates(const ParticleSpan& p, const Rates<T>& r, Motion& out) {
   out.acceleration_sq = std::max(out.acceleration_sq, hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
+/// ln(1 + s) - s/(1 + s) = s^2/2 - 2 s^3/3 + 3 s^4/4 - ... The series is quicker and, since the two
+/// nearly cancel, more exact where the fluid is hardly compressed: its rest is below 1e-15 of it.
+HWY_INLINE StateVec compression(StateVec s) {
+  const State d;
+  constexpr double kHardly = 0.02;
+  constexpr int kTerms = 9;
+  StateVec sum = hn::Zero(d);
+  for (int k = kTerms + 1; k >= 2; --k) {
+    sum = hn::Set(d, static_cast<double>(k - 1) / k) - s * sum;
+  }
+  const StateVec series = s * s * sum;
+  if (hn::AllTrue(d, hn::Abs(s) <= hn::Set(d, kHardly))) return series;
+  double excess[kCluster];
+  double exact[kCluster];
+  hn::StoreU(s, d, excess);
+  hn::StoreU(series, d, exact);
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+    const double e = excess[lane];
+    if (std::abs(e) > kHardly) exact[lane] = std::log1p(e) - e / (1.0 + e);
+  }
+  return hn::LoadU(d, exact);
+}
+
+inline void sum_energy(const ParticleSpan& p, const Method& method, Energy& out) {
+  const State d;
+  StateVec speeds_sq = hn::Zero(d);
+  StateVec lifts = hn::Zero(d);
+  StateVec compressions = hn::Zero(d);
+  const StateVec fx = hn::Set(d, method.gravity.x());
+  const StateVec fy = hn::Set(d, method.gravity.y());
+  const StateVec rho_0 = hn::Set(d, method.reference_density);
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
+    const auto at = [&](const double* field)
+                        HWY_ATTR { return hn::IfThenElseZero(used, hn::LoadU(d, field + s)); };
+    const StateVec vx = at(p.vx);
+    const StateVec vy = at(p.vy);
+    speeds_sq = speeds_sq + (vx * vx + vy * vy);
+    lifts = lifts - (fx * at(p.x) + fy * at(p.y));
+    compressions = compressions + compression(at(p.density_excess) / rho_0);
+  }
+  const double mass = method.particle_mass();
+  const double c_sq = method.sound_speed * method.sound_speed;
+  out.kinetic += 0.5 * mass * hn::GetLane(hn::SumOfLanes(d, speeds_sq));
+  out.potential += mass * hn::GetLane(hn::SumOfLanes(d, lifts));
+  out.internal += mass * c_sq * hn::GetLane(hn::SumOfLanes(d, compressions));
+}
+
 template <typename T>
 void fill_updates(Updates<T>& out) {
   out.leap_frog = &leap_frog<T>;
@@ -303,6 +355,7 @@ void fill_updates(Updates<T>& out) {
   out.measure = &measure;
   out.measure_acceleration = &measure_acceleration;
   out.measure_rates = &measure_rates<T>;
+  out.sum_energy = &sum_energy;
 }
 
 }  // namespace sluice::HWY_NAMESPACE

@@ -6,6 +6,7 @@
 
 #include "engine/sph/method.hpp"
 #include "engine/sph/pair_arrays.hpp"
+#include "engine/sph/particles.hpp"
 #include "engine/sph/tracks.hpp"
 #include "engine/sph/vec.hpp"
 
@@ -47,15 +48,17 @@ struct Motion {
   double acceleration_sq = 0.0;  ///< largest, m^2/s^4
   double min_density_excess = 1e300;
   double max_density_excess = -1e300;
-  bool strayed = false;  ///< a particle is off its track by more than the leeway
-  bool outside = false;  ///< a particle is to be retired
-  bool finite = true;    ///< velocities and densities are; a place that is not is outside
+  double max_x = -1e300;  ///< m
+  bool strayed = false;   ///< a particle is off its track by more than the leeway
+  bool outside = false;   ///< a particle is to be retired
+  bool finite = true;     ///< velocities and densities are; a place that is not is outside
 
   void merge(const Motion& other) {
     speed_sq = std::max(speed_sq, other.speed_sq);
     acceleration_sq = std::max(acceleration_sq, other.acceleration_sq);
     min_density_excess = std::min(min_density_excess, other.min_density_excess);
     max_density_excess = std::max(max_density_excess, other.max_density_excess);
+    max_x = std::max(max_x, other.max_x);
     strayed |= other.strayed;
     outside |= other.outside;
     finite &= other.finite;
@@ -98,12 +101,14 @@ struct Updates {
                  T* own) = nullptr;
   /// eq. 10 into both time levels, by the same increment.
   void (*reinitialise)(const ParticleSpan&, const Rates<T>&, double reference_density) = nullptr;
-  /// Speeds, densities and what is outside.
+  /// Speeds, densities, the front and what is outside.
   void (*measure)(const ParticleSpan&, const Method&, Motion&) = nullptr;
   /// Largest acceleration of the state.
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;
   /// Largest acceleration of the rates.
   void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
+  /// Adds the energy of the particles.
+  void (*sum_energy)(const ParticleSpan&, const Method&, Energy&) = nullptr;
 };
 
 }  // namespace sluice

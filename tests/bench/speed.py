@@ -1,12 +1,14 @@
 """Speed and memory of whole runs, everything included, as one table.
 
-Usage: speed.py SLUICE SCENES [--particles N,N...] [--threads N,N...] [--seconds S]
+Usage: speed.py SLUICE SCENES [--particles N,N...] [--threads N,N+N...] [--seconds S]
                 [--repeat R] [--simd TARGET]
 
 For each scene (the paper's and the recommended scheme), each number of particles, precision and
 number of threads: million fluid-particle steps per second, the median of R runs taken in turns
 (machines are noisy: compare lines of one table only), bytes per particle, and the share of each
 pass. A run starts as the scene does and is stopped after about S seconds of a core's work.
+Threads 1+1 are two runs side by side, their speeds added: what the machine's cores can do together,
+and so the most that two threads of one run could reach.
 """
 
 import argparse
@@ -19,6 +21,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
 PASSES = ["sort", "wall_pressure", "pair_sums", "reinitialisation", "update", "sample"]
 SCENES = ["dambreak-paper.json", "dambreak.json"]
@@ -27,6 +30,10 @@ ROUGH_RATE = 1.5e7  # fluid-particle steps per second of a core, to choose the n
 
 def numbers(text):
     return [int(float(word)) for word in text.split(",")]
+
+
+def side_by_side(text):
+    return [[int(word) for word in runs.split("+")] for runs in text.split(",")]
 
 
 def processor():
@@ -71,12 +78,20 @@ def run(program, scene, threads, seconds, simd):
             return json.load(stream)
 
 
+def speed_together(program, scene, threads, options):
+    """Of runs with so many threads each, begun at once: (fluid-particle steps/s, an outcome)."""
+    with ThreadPoolExecutor() as pool:
+        outcomes = list(pool.map(
+            lambda each: run(program, scene, each, options.seconds, options.simd), threads))
+    return sum(o["this_attempt"]["particle_steps_per_second"] for o in outcomes), outcomes[-1]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
     parser.add_argument("scenes")
     parser.add_argument("--particles", type=numbers, default=numbers("2e4,1e5,5e5,2e6"))
-    parser.add_argument("--threads", type=numbers, default=[1, 2])
+    parser.add_argument("--threads", type=side_by_side, default=[[1], [2], [1, 1]])
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--simd", default="")
@@ -94,18 +109,19 @@ def main():
                     cases.append((name, precision, threads, sized, []))
     for _ in range(options.repeat):
         for _, _, threads, scene, outcomes in cases:
-            outcomes.append(run(options.program, scene, threads, options.seconds, options.simd))
+            outcomes.append(speed_together(options.program, scene, threads, options))
 
     print(f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; median of "
           f"{options.repeat}; million fluid-particle steps per second, everything included")
     print(f"{'scene':<22}{'particles':>10} {'sums':<7}{'threads':>7} {'target':<6}{'M/s':>7}"
           f"{'B/particle':>11}" + "".join(f"{name[:9]:>10}" for name in PASSES))
     for name, precision, threads, _, outcomes in cases:
-        rate = statistics.median(o["this_attempt"]["particle_steps_per_second"] for o in outcomes)
-        last = outcomes[-1]
+        rate = statistics.median(speed for speed, _ in outcomes)
+        _, last = outcomes[-1]
         bytes_each = last["this_attempt"]["engine_bytes"] / last["particles"]
         share = {p["name"]: p["share"] for p in last["this_attempt"]["passes"]}
-        print(f"{name:<22}{last['particles']:>10} {precision:<7}{threads:>7} "
+        print(f"{name:<22}{last['particles']:>10} {precision:<7}"
+              f"{'+'.join(map(str, threads)):>7} "
               f"{last['simd_target']:<6}{rate * 1e-6:>7.2f}{bytes_each:>11.0f}"
               + "".join(f"{100 * share.get(p, 0):>8.1f} %" for p in PASSES), flush=True)
 
