@@ -163,6 +163,10 @@ void describe_viscosity(Archive& a, double& alpha, double& epsilon) {
 template <class Archive>
 void describe(Archive& a, ArtificialViscosity& term) {
   describe_viscosity(a, term.alpha, term.epsilon);
+  a.number("beta", term.beta,
+           {.about = "strength of the quadratic part, which acts where particles collide and keeps "
+                     "them apart at impacts; 0 leaves it out",
+            .range = from(0, 10)});
 }
 template <class Archive>
 void describe(Archive& a, WallFriction& term) {

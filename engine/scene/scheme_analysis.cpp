@@ -11,7 +11,7 @@ constexpr std::size_t kSchemes = 16;  // of about 100 KiB each
 constexpr std::size_t kRadii = 64;
 
 /// All that LatticeStability and courant_limits look at: a term that they learn belongs in here.
-/// The wall law does not: its stress is of second order for small waves in water at rest.
+/// The wall law and beta do not: they are of second order for small waves in water at rest.
 struct Scheme {
   Integrator integrator;
   KernelKind kernel;

@@ -52,7 +52,8 @@ std::uint32_t most_neighbours(ThreadTeam& team, const Layout& layout, const Pair
   });
   std::vector<std::uint32_t> most_of(chunks.size(), 0);
   team.run(chunks.size(), [&](std::size_t k) {
-    std::vector<std::uint32_t> all(met[k].begin(), met[k].begin() + chunks[k].begin.size() - 1);
+    const auto own = static_cast<std::ptrdiff_t>(chunks[k].begin.size() - 1);
+    std::vector<std::uint32_t> all(met[k].begin(), met[k].begin() + own);
     for (const Arrival& a : sums.arrivals(k)) all[a.cluster] += met[a.chunk][a.place];
     for (const std::uint32_t entries : all) most_of[k] = std::max(most_of[k], entries);
   });

@@ -65,6 +65,7 @@ TermConstants<T> term_constants(const Method& m, double tile_size) {
   if (m.viscosity) {
     k.viscosity_alpha = static_cast<T>(m.viscosity->alpha);
     k.viscosity_epsilon = static_cast<T>(m.viscosity->epsilon);
+    k.viscosity_beta = static_cast<T>(m.viscosity->beta);
   }
   if (m.wall_friction) {
     k.friction_alpha = static_cast<T>(m.wall_friction->alpha);

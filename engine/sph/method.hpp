@@ -36,10 +36,12 @@ struct DensityDiffusion {
   double delta = 0.1;
 };
 
-/// Pi_ij of eq. 8; `alpha` and `epsilon` are dimensionless.
+/// Pi_ij of eq. 8 and, with `beta`, its quadratic part (Monaghan 1992), which acts where particles
+/// collide and keeps them from running into each other. All dimensionless.
 struct ArtificialViscosity {
   double alpha = 0.02;
   double epsilon = 0.01;
+  double beta = 0.0;  ///< 0: the quadratic part is left out
 };
 
 /// Pi_ij of eq. 8 summed against resting walls: a friction that the paper's free slip leaves out.

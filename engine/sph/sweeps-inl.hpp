@@ -179,17 +179,19 @@ enum class Share { i_alone, both };
 
 /// What holds the fluid back at walls: nothing, eq. 8, a stress that acts in the fluid as well, or
 /// a wall law.
+enum class Viscosity { none, linear, with_impacts };
 enum class Drag { none, wall_friction, physical_viscosity, wall_drag };
 
 /// Which terms a rate sweep sums.
 enum class Sums { density, acceleration, both };
-template <Sums kSums, bool kDiffusion, bool kViscosity, Drag kDrag>
+template <Sums kSums, bool kDiffusion, Viscosity kViscosity, Drag kDrag>
 struct Terms {
   static constexpr bool density = kSums != Sums::acceleration;
   static constexpr bool acceleration = kSums != Sums::density;
   static constexpr bool diffusion = density && kDiffusion;
-  static constexpr bool viscosity = acceleration && kViscosity;
-  static constexpr bool friction = acceleration && kDrag == Drag::wall_friction;
+  static constexpr Viscosity viscosity = acceleration ? kViscosity : Viscosity::none;
+  static constexpr Viscosity friction =
+      acceleration && kDrag == Drag::wall_friction ? Viscosity::linear : Viscosity::none;
   static constexpr bool physical = acceleration && kDrag == Drag::physical_viscosity;
   static constexpr bool wall_drag = acceleration && kDrag == Drag::wall_drag;
   static constexpr SumBlocks blocks = !acceleration ? kDensitySums
@@ -205,7 +207,7 @@ struct RateOfI {
 };
 
 /// Adds the pairs of one list to the particles i and, where `sums` is given, to the particles j.
-template <class Shape, class Terms, bool kViscous, Share kShare, typename T, class V>
+template <class Shape, class Terms, Viscosity kViscosity, Share kShare, typename T, class V>
 HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
                           const TileShift<T>& shift, V x_i, V y_i,
                           const ArtificialViscosityTerm<T>& viscosity,
@@ -216,7 +218,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
   const auto body = [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t part) HWY_ATTR {
     PairGeometry<V> pair{dx, dy, hn::MulAdd(dx, dx, dy * dy), hn::Zero(d)};
     const V g = Shape::slope(d, pair.r_sq);
-    if constexpr (Terms::density || kViscous) {
+    if constexpr (Terms::density || kViscosity != Viscosity::none) {
       pair.approach = hn::MulAdd(i.u - load_j(other.u + j), dx, (i.v - load_j(other.v + j)) * dy);
     }
     V density_j, x_j, y_j;
@@ -234,8 +236,10 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
     }
     if constexpr (Terms::acceleration) {
       V summand = PressureGradient::summand(i.stress, load_j(other.stress + j));
-      if constexpr (kViscous) {
-        summand = viscosity.add_to(d, summand, pair, i.half, load_j(other.excess + j));
+      if constexpr (kViscosity != Viscosity::none) {
+        constexpr bool kImpacts = kViscosity == Viscosity::with_impacts;
+        summand =
+            viscosity.template add_to<kImpacts>(d, summand, pair, i.half, load_j(other.excess + j));
       }
       summand = summand * g;
       x_j = summand * dx;
@@ -275,8 +279,9 @@ void sum_rates(const SweepTask<T>& task) {
   const TileShift<T> shift(k.tile_size);
   const DensityDiffusionTerm<T> diffusion{k.two_delta};
   const DensityDiffusionTerm<T> wall_diffusion{k.two_delta_wall};
-  const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon};
-  const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon};
+  const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon,
+                                             k.viscosity_beta};
+  const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon, T{0}};
   const PhysicalViscosityTerm<T> physical{k.two_nu};
   const WallDragTerm<T> wall_drag{k.wall_two_nu_by_speed};
   std::fill_n(task.sums, Terms::blocks.stride * task.to_fluid->places(), T{});
@@ -454,7 +459,8 @@ std::size_t prune_list(const PruneTask<T>& task) {
 
 template <class Shape, Sums kSums, typename T>
 typename Sweeps<T>::Sweep select_rates(const Method& m) {
-  const auto with = [&]<bool kDiffusion, bool kViscosity>() -> typename Sweeps<T>::Sweep {
+  using enum Viscosity;
+  const auto with = [&]<bool kDiffusion, Viscosity kViscosity>() -> typename Sweeps<T>::Sweep {
     if (m.wall_friction) {
       return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_friction>, T>;
     }
@@ -466,20 +472,20 @@ typename Sweeps<T>::Sweep select_rates(const Method& m) {
                             T>
                : &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::none>, T>;
   };
+  const auto with_viscosity = [&]<bool kDiffusion>() {
+    if (!m.viscosity) return with.template operator()<kDiffusion, none>();
+    return m.viscosity->beta > 0.0 ? with.template operator()<kDiffusion, with_impacts>()
+                                   : with.template operator()<kDiffusion, linear>();
+  };
   // What a sweep does not sum is not a choice: the same loop serves both, and is compiled once.
   if constexpr (kSums == Sums::density) {
-    return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, false, Drag::none>, T>
-                       : &sum_rates<Shape, Terms<kSums, false, false, Drag::none>, T>;
+    return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, none, Drag::none>, T>
+                       : &sum_rates<Shape, Terms<kSums, false, none, Drag::none>, T>;
   } else if constexpr (kSums == Sums::acceleration) {
-    return m.viscosity ? with.template operator()<false, true>()
-                       : with.template operator()<false, false>();
+    return with_viscosity.template operator()<false>();
   } else {
-    if (m.diffusion) {
-      return m.viscosity ? with.template operator()<true, true>()
-                         : with.template operator()<true, false>();
-    }
-    return m.viscosity ? with.template operator()<false, true>()
-                       : with.template operator()<false, false>();
+    return m.diffusion ? with_viscosity.template operator()<true>()
+                       : with_viscosity.template operator()<false>();
   }
 }
 

@@ -16,7 +16,7 @@ template <typename T>
 struct TermConstants {
   T two_delta{};
   T two_delta_wall{};  ///< 0 where nothing is diffused between fluid and walls
-  T viscosity_alpha{}, viscosity_epsilon{1};
+  T viscosity_alpha{}, viscosity_epsilon{1}, viscosity_beta{};
   T friction_alpha{}, friction_epsilon{1};
   T two_nu{};
   T wall_two_nu_by_speed{};

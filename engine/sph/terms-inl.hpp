@@ -67,18 +67,25 @@ struct PressureGradient {
 
 /// Artificial viscosity, eq. 8: Pi_ij = max(-alpha c h/rho_ij v_ij . x_ij/(|x_ij|^2 + epsilon h^2),
 /// 0). Between fluid particles it is the paper's stabilising term; against resting wall particles
-/// it is a wall friction.
+/// it is a wall friction. Impacts add beta mu_ij^2/rho_ij, with mu_ij the h v_ij . x_ij/(...) of
+/// those that approach each other (Monaghan 1992).
 template <typename T>
 struct ArtificialViscosityTerm {
   T alpha;
   T epsilon;
+  T beta;
 
   /// `half_i` is 1 + s_i/2, so that half_i + s_j/2 is the mean density of the pair.
-  template <class D, class V>
+  template <bool kImpacts, class D, class V>
   HWY_INLINE V add_to(D d, V summand, const PairGeometry<V>& pair, V half_i, V excess_j) const {
     const V mean_density = hn::MulAdd(hn::Set(d, T{0.5}), excess_j, half_i);
     const V divisor = mean_density * (pair.r_sq + hn::Set(d, epsilon));
-    return hn::NegMulAdd(hn::Set(d, alpha), hn::Min(pair.approach, hn::Zero(d)) / divisor, summand);
+    const V approach = hn::Min(pair.approach, hn::Zero(d)) / divisor;
+    V strength = hn::Set(d, alpha);
+    if constexpr (kImpacts) {
+      strength = hn::NegMulAdd(hn::Set(d, beta) * mean_density, approach, strength);
+    }
+    return hn::NegMulAdd(strength, approach, summand);
   }
 };
 

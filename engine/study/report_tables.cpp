@@ -154,6 +154,9 @@ std::string scheme_text(const Scene& scene) {
                         word_for(kDiffusionWords, method.diffusion->kind), method.diffusion->delta);
   }
   if (method.viscosity) text += fmt::format(", viscosity alpha {:g}", method.viscosity->alpha);
+  if (method.viscosity && method.viscosity->beta > 0.0) {
+    text += fmt::format(", beta {:g}", method.viscosity->beta);
+  }
   if (method.wall_friction) {
     text += fmt::format(", wall friction alpha {:g}", method.wall_friction->alpha);
   } else if (method.physical_viscosity) {

@@ -26,7 +26,7 @@ Json recommended_scheme() {
             {"courant", 1.0},
             {"precision", "mixed"},
             {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
-            {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}}},
+            {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}, {"beta", 0.5}}},
             {"wall_drag", {{"coefficient", 0.01}}},
             {"wall_pressure", "clamped"}}}};
 }

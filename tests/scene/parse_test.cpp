@@ -65,6 +65,7 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
   EXPECT_EQ(m.diffusion->delta, 0.2);
   EXPECT_EQ(m.viscosity->alpha, 0.05);
   EXPECT_EQ(m.viscosity->epsilon, 0.02);
+  EXPECT_EQ(m.viscosity->beta, 0.4);
   EXPECT_EQ(m.wall_friction->alpha, 0.03);
   EXPECT_EQ(m.wall_friction->epsilon, 0.03);
   EXPECT_EQ(m.wall_pressure, WallPressure::clamped);

@@ -13,13 +13,13 @@ double wall_density(const Method& m, double pressure) {
   return m.reference_density + pressure / (m.sound_speed * m.sound_speed);  // eq. 3
 }
 
-/// eq. 8 for one pair.
-double viscous_pressure(double alpha, double epsilon, const Method& m, double rho_i, double rho_j,
-                        const Vec& v_ij, const Vec& x_ij) {
+/// eq. 8 for one pair, with its quadratic part.
+double viscous_pressure(const ArtificialViscosity& term, const Method& m, double rho_i,
+                        double rho_j, const Vec& v_ij, const Vec& x_ij) {
   const double h = m.smoothing_length;
   const double rho_mean = 0.5 * (rho_i + rho_j);
-  const double approach = v_ij.dot(x_ij) / (x_ij.squaredNorm() + epsilon * h * h);
-  return std::max(-alpha * m.sound_speed * h / rho_mean * approach, 0.0);
+  const double mu = h * v_ij.dot(x_ij) / (x_ij.squaredNorm() + term.epsilon * h * h);
+  return mu < 0.0 ? (-term.alpha * m.sound_speed * mu + term.beta * mu * mu) / rho_mean : 0.0;
 }
 
 /// What is diffused between i and j (eq. 7): the density difference, less its hydrostatic part
@@ -129,16 +129,16 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
     for (std::size_t j = 0; j < fluid.size(); ++j) {
       if (j == i) continue;
       const double rho_j = m.reference_density + fluid.excess[j];
-      const double pi_ij =
-          m.viscosity ? viscous_pressure(m.viscosity->alpha, m.viscosity->epsilon, m, rho_i, rho_j,
-                                         fluid.v[i] - fluid.v[j], fluid.x[i] - fluid.x[j])
-                      : 0.0;
+      const double pi_ij = m.viscosity
+                               ? viscous_pressure(*m.viscosity, m, rho_i, rho_j,
+                                                  fluid.v[i] - fluid.v[j], fluid.x[i] - fluid.x[j])
+                               : 0.0;
       add(fluid.x[j], fluid.v[j], rho_j, c * c * fluid.excess[j], pi_ij, true, nu);
     }
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const double rho_w = wall_density(m, wall_pressure[w]);
       const double pi_iw =
-          m.wall_friction ? viscous_pressure(m.wall_friction->alpha, m.wall_friction->epsilon, m,
+          m.wall_friction ? viscous_pressure({m.wall_friction->alpha, m.wall_friction->epsilon}, m,
                                              rho_i, rho_w, fluid.v[i], fluid.x[i] - walls[w])
                           : 0.0;
       const bool diffuses = m.diffusion && m.diffusion->kind == DiffusionKind::molteni_colagrossi;

@@ -27,6 +27,7 @@ std::vector<Method> all_combinations_of_terms(KernelKind kernel) {
     if (mask % 3 == 1) m.diffusion->kind = DiffusionKind::molteni_colagrossi;
     const int rest = mask / 3;
     if ((rest & 1) == 0) m.viscosity.reset();
+    if ((rest & 3) == 3) m.viscosity->beta = 0.4;
     if ((rest & 2) == 0) m.gravity.setZero();
     if ((rest & 4) == 0) m.wall_pressure = WallPressure::clamped;
     const int drag = rest / 8;
@@ -53,7 +54,8 @@ std::string describe(const Method& m, const std::string& target) {
   return target + ", " + name_of(m.precision) + ", " + name_of(m.integrator) + ", kernel " +
          std::to_string(static_cast<int>(m.kernel)) + ", diffusion " +
          (m.diffusion ? std::to_string(static_cast<int>(m.diffusion->kind)) : "none") +
-         ", viscosity " + std::to_string(m.viscosity.has_value()) + ", friction " +
+         ", viscosity " + std::to_string(m.viscosity.has_value()) + " (beta " +
+         std::to_string(m.viscosity ? m.viscosity->beta : 0.0) + "), friction " +
          std::to_string(m.wall_friction.has_value()) + ", physical viscosity " +
          std::to_string(m.physical_viscosity.has_value()) + ", wall drag " +
          std::to_string(m.wall_drag.has_value()) + ", gravity " +

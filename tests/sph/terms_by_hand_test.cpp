@@ -147,9 +147,22 @@ TEST(ViscosityTerm, ActsOnApproachWithTheMeanDensity) {
   EXPECT_CLOSE(rates.acceleration[1].x(), kMass * pi * grad_W(1.0));
 }
 
+TEST(ViscosityTerm, AddsTheSquareOfTheApproachAtImpacts) {
+  Method m = plain_method();
+  m.viscosity = ArtificialViscosity{0.02, 0.01, 0.5};
+  Fluid fluid;
+  fluid.add({0.0, 0.0}, {3.0, 0.0}, 0.0);
+  fluid.add({kH, 0.0}, {-1.0, 0.0}, 0.0);
+  const auto rates = rates_at_start(m, fluid, {});
+  const double mu = 4.0 / 1.01;
+  const double pi = (0.02 * kC * mu + 0.5 * mu * mu) / kRho0;
+  EXPECT_CLOSE(rates.acceleration[0].x(), -kMass * pi * grad_W(1.0));
+  EXPECT_CLOSE(rates.acceleration[1].x(), kMass * pi * grad_W(1.0));
+}
+
 TEST(ViscosityTerm, DoesNotActOnReceding) {
   Method m = plain_method();
-  m.viscosity = ArtificialViscosity{0.02, 0.01};
+  m.viscosity = ArtificialViscosity{0.02, 0.01, 0.5};
   Fluid fluid;
   fluid.add({0.0, 0.0}, {-3.0, 1.0}, 0.0);
   fluid.add({kH, 0.0}, {1.0, -1.0}, 0.0);
