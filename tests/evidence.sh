@@ -3,7 +3,7 @@
 # prints both reports, then one line per requirement, pass or fail. Takes minutes. What follows an
 # impact depends on where single particles hit: five more runs of the paper's scheme to T = 5.2 tell
 # the spread of its first peak, three more of the recommended one that of its error, each started
-# with its own displacement of 1e-4 dx. Medians are judged.
+# with its own displacement of 1e-4 dx. Their medians are judged.
 #
 #   tests/evidence.sh [SLUICE]      SLUICE: the program; default: built in build/release
 #
