@@ -137,8 +137,14 @@ void stability(const StabilityArguments& arguments) {
     return;
   }
   if (arguments.map) return run_map(arguments);
-  if (arguments.order) return run_order(arguments);
-  run_suite(arguments);
+  try {
+    arguments.order ? run_order(arguments) : run_suite(arguments);
+  } catch (const SuiteStopped& stopped) {
+    throw CommandEnd(ExitCode::checkpointed,
+                     fmt::format("{}: cases without a line above have no verdict; name them to "
+                                 "go on",
+                                 stopped.what()));
+  }
 }
 
 }  // namespace
@@ -166,7 +172,7 @@ void add_stability(CLI::App& app) {
                    "Keep the cases' job folders here, checkpoints included");
   verb->footer(
       "Exit code 0: all gates met, or missed for a cause named beside them; 4: some "
-      "missed.\nExample: sluice stability still-tank --quick");
+      "missed; 85: stopped.\nExample: sluice stability still-tank --quick");
   verb->callback([arguments] { stability(*arguments); });
 }
 

@@ -378,7 +378,7 @@ void describe(Archive& a, SceneReference& reference) {
 template <class Archive>
 void describe_material(Archive& a, Document& document) {
   a.number("density", document.scene.method.reference_density,
-           {.about = "reference density rho_0", .unit = "kg/m^3", .range = from(1e-3, 1e5)});
+           {.about = "reference density rho_0", .unit = "kg/m^3", .range = from(1e-6, 1e6)});
   a.number("sound_speed", document.sound_speed,
            {.about = "numerical speed of sound c, about ten times the largest flow speed",
             .unit = "m/s",

@@ -63,9 +63,11 @@ class StripSearch {
       if (out.size() < found + (last - row.next)) out.resize(2 * (found + (last - row.next)));
       for (std::uint32_t j = row.next; j < last; ++j) {
         out[found] = j | tile_code(self.tile[i], bounds_.tile[j]) << PairList::kShiftBit;
-        const bool near = (bounds_.x_max[j] >= left) & (bounds_.x_min[j] <= right) &
-                          (bounds_.y_max[j] >= low) & (bounds_.y_min[j] <= high);
-        found += near ? 1U : 0U;
+        const unsigned near_x =
+            unsigned{bounds_.x_max[j] >= left} & unsigned{bounds_.x_min[j] <= right};
+        const unsigned near_y =
+            unsigned{bounds_.y_max[j] >= low} & unsigned{bounds_.y_min[j] <= high};
+        found += near_x & near_y;
       }
     }
     return found;

@@ -78,9 +78,7 @@ CaseRun StabilityBench::run(const Json& scene, StabilityCheck stability, const P
   WarningKeeper reporter(run.warnings);
   RunOptions options;
   run.outcome = run_job(folder, run.scene, options, reporter);
-  if (run.outcome.exit_code == ExitCode::checkpointed) {
-    throw std::runtime_error("stopped by a signal");
-  }
+  if (run.outcome.exit_code == ExitCode::checkpointed) throw SuiteStopped();
   const Expectation expected{scene_hash(identity_text(run.scene)), run.scene.method.integrator};
   if (auto restored = folder.newest_checkpoint(expected)) {
     run.checkpoint = name + "/" + restored->path.filename().string();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,12 @@ struct CaseRun {
   [[nodiscard]] const Series& sensor(std::string_view name) const;
 };
 
+/// A signal asked to stop: what was judged before stays, the case at hand has no verdict.
+class SuiteStopped : public std::runtime_error {
+ public:
+  SuiteStopped() : std::runtime_error("stopped by a signal") {}
+};
+
 /// Runs scenes of the suite as ordinary jobs, each in a folder of its own, with one scheme.
 class StabilityBench {
  public:
@@ -42,7 +49,7 @@ class StabilityBench {
 
   /// Runs `scene` to its end or failure, with the bench's scheme unless it has numerics of its own.
   /// `stability` skip: also what linear analysis refuses.
-  /// Throws StorageError; std::runtime_error when a signal asks to stop.
+  /// Throws StorageError; SuiteStopped.
   [[nodiscard]] CaseRun run(const nlohmann::json& scene,
                             StabilityCheck stability = StabilityCheck::refuse,
                             const Prepare& prepare = {});

@@ -131,8 +131,8 @@ CaseResult length_scales(StabilityBench& bench) {
   return same_in_other_units(bench, others);
 }
 CaseResult density_scales(StabilityBench& bench) {
-  const std::array others{OtherUnits{"density x 1e-6", {.density = 1e-3}},
-                          OtherUnits{"density x 1e2", {.density = 1e5}}};
+  const std::array others{OtherUnits{"density x 1e-9", {.density = 1e-6}},
+                          OtherUnits{"density x 1e3", {.density = 1e6}}};
   return same_in_other_units(bench, others);
 }
 
@@ -259,7 +259,7 @@ constexpr std::array kCases{
                   length_scales,
                   "eq. 6 is cut at R = 3, where lattice neighbours lie at h = dx: rounding decides "
                   "which of them count"},
-    StabilityCase{"density-scales", "density 1e-3 and 1e5, double precision", "equal to 1e-9",
+    StabilityCase{"density-scales", "density 1e-6 and 1e6, double precision", "equal to 1e-9",
                   density_scales},
     StabilityCase{"limits", "C at both sides of the predicted limits", "verdict as predicted",
                   limits},

@@ -72,9 +72,9 @@ class Sandbox(unittest.TestCase):
         return subprocess.run([SLUICE, *map(str, arguments)], cwd=self.folder, text=True,
                               capture_output=True, timeout=EVERY_RUN_ENDS_WITHIN)
 
-    def start(self, *arguments):
+    def start(self, *arguments, stderr=subprocess.DEVNULL):
         process = subprocess.Popen([SLUICE, *map(str, arguments)], cwd=self.folder, text=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+                                   stdout=subprocess.PIPE, stderr=stderr)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -383,6 +383,18 @@ class Failures(Sandbox):
         self.assertEqual([case["name"] for case in cases], ["free-fall", "overlap"])
         self.assertIn("free-fall", (self.folder / "s.html").read_text())
         self.assertTrue((self.folder / "kept" / cases[0]["verdict"]["checkpoint"]).exists())
+
+    def test_a_stopped_stability_suite_keeps_its_verdicts_and_says_how_to_go_on(self):
+        process = self.start("stability", "free-fall", "column-1-50", "--folder", "kept",
+                             stderr=subprocess.PIPE)
+        while not list((self.folder / "kept").glob("*column-1-50/series.h5")):
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+        process.terminate()
+        verdicts, complaint = process.communicate()
+        self.assertEqual(process.returncode, 85, complaint)
+        self.assertIn("free-fall", verdicts)
+        self.assertIn("without a line above", complaint)
 
     def test_the_stability_suite_fails_for_a_scheme_that_misses_a_gate(self):
         # Molteni-Colagrossi and Shepard lift a film of one layer of particles.
