@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -43,6 +45,21 @@ std::string unknown_verb(const CLI::App& app, std::string_view word) {
   return fmt::format("there is no verb {}: {}", word, hint(word, views));
 }
 
+/// A reader that has seen enough, such as `head`, is no failure.
+bool reader_went_away() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
+}
+
+/// What was printed must have gone where it was sent, or a cut off file passes for a whole one.
+int flushed(int code) {
+  const bool whole = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (whole || reader_went_away()) return code;
+  return fail(
+      ExitCode::storage_failure,
+      "what was printed is not whole: standard output takes no more (its disk may be full)");
+}
+
 int parse_and_run(CLI::App& app, int argc, char** argv) {
   try {
     if (argc > 1) {
@@ -65,6 +82,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::internal_error, "out of memory: see sluice plan for what a scene needs");
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return 0;  // told by flushed()
     return fail(ExitCode::internal_error, fmt::format("unexpected: {}", error.what()));
   }
 }
@@ -86,5 +104,5 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Example: sluice run dambreak-quick.json");
   for (const auto add_verb : sluice::kVerbs) add_verb(app);
-  return sluice::parse_and_run(app, argc, argv);
+  return sluice::flushed(sluice::parse_and_run(app, argc, argv));
 }

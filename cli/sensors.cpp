@@ -130,6 +130,10 @@ void require_sense(const SensorArguments& arguments) {
   if (!gaussian && arguments.tau) {
     throw CommandEnd(ExitCode::usage, "--tau goes with --filter gaussian");
   }
+  if (gaussian && !std::isfinite(*arguments.tau)) {
+    throw CommandEnd(ExitCode::usage,
+                     fmt::format("--tau is {}, but must be a number of seconds", *arguments.tau));
+  }
 }
 
 void require_folder(const SensorArguments& arguments) {

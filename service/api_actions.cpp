@@ -3,6 +3,7 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/json_text.hpp"
@@ -65,26 +66,34 @@ std::optional<double> read_end_time(const std::string& body) {
   return end_time;
 }
 
-/// The scene's text with another end time, checked as a submitted one is.
-std::string extended_scene(const std::string& text, double end_time, const ServiceLimits& limits) {
+/// The scene's text with another end time.
+std::string extended_scene(const std::string& text, double end_time) {
   Json scene = Json::parse(text);
   scene["end_time"] = end_time;
   std::string extended = scene.dump(2) + "\n";
-  if (extended.size() > kMaxSceneBytes) extended = scene.dump();
-  (void)admit_scene(extended, limits);
-  return extended;
+  return extended.size() > kMaxSceneBytes ? scene.dump() : extended;
 }
 
-/// Writes the later end time into the job's scene and returns the text before. The folder is free
-/// again afterwards: a worker needs it as soon as the job is queued.
-std::string replace_end_time(const ApiContext& context, const Job& job, double end_time) {
+/// What an extension replaces, and with what.
+struct Extension {
+  std::string scene_before;
+  std::string estimate;
+};
+
+/// Writes the later end time into the job's scene, checked as a submitted one is. The folder is
+/// free again afterwards: a worker needs it as soon as the job is queued.
+Extension replace_end_time(const ApiContext& context, Job job, double end_time) {
   JobFolder folder = JobFolder::open(context.paths(job.id).root());
   std::string before = folder.scene_text();
-  folder.publish_text(folder.paths().scene(),
-                      extended_scene(before, end_time, context.scheduler.limits()));
-  return before;
+  const std::string extended = extended_scene(before, end_time);
+  const Admitted admitted = admit_scene(extended, context.scheduler.limits());
+  describe_scene(job, admitted.scene, admitted.estimate);
+  folder.publish_text(folder.paths().scene(), extended);
+  return {std::move(before), std::move(job.estimate)};
 }
 
+/// Resumes are taken one at a time: what a job is when its scene is changed, it is until its row
+/// is.
 Response extend(ApiContext& context, const Job& job, double end_time) {
   if (job.state == JobState::running || job.state == JobState::queued) {
     throw ApiError(ProblemType::wrong_state,
@@ -96,16 +105,16 @@ Response extend(ApiContext& context, const Job& job, double end_time) {
     refuse_body("/end_time",
                 fmt::format("must be later than the job's end time, {} s", shortest(job.end_time)));
   }
-  const std::scoped_lock one_at_a_time(context.extensions);
-  const std::string before = replace_end_time(context, job, end_time);
+  const Extension extension = replace_end_time(context, job, end_time);
   JobChange change;
   change.end_time = end_time;
+  change.estimate = extension.estimate;
   change.event_detail = Json{{"end_time", end_time}}.dump();
   try {
     return answer(context, context.store.apply(job.id, JobAction::resume, "", change));
   } catch (...) {
     JobFolder folder = JobFolder::open(context.paths(job.id).root());
-    folder.publish_text(folder.paths().scene(), before);
+    folder.publish_text(folder.paths().scene(), extension.scene_before);
     throw;
   }
 }
@@ -122,8 +131,9 @@ Response pause_job(ApiContext& context, const RouteRequest& request) {
 
 Response resume_job(ApiContext& context, const RouteRequest& request) {
   QueryReader(request.http).finish();
-  const Job job = find_job(context, request.parts[0]);
   const auto end_time = read_end_time(request.http.body);
+  const std::scoped_lock one_at_a_time(context.resumes);
+  const Job job = find_job(context, request.parts[0]);
   if (!end_time) return act(context, job.id, JobAction::resume, {});
   Response response = extend(context, job, *end_time);
   context.scheduler.poke();

@@ -91,10 +91,11 @@ Response submit_study(ApiContext& context, const RouteRequest& request) {
   const std::scoped_lock one_at_a_time(context.study_changes);
   if (const auto known = context.studies.find_by_key(options.key)) {
     if (known->body_hash == hash) return accepted(context, *known, true);
-    throw ApiError(ProblemType::key_reused,
-                   fmt::format("this Idempotency-Key came with another body before and made study "
-                               "{}; take a new key for a new study",
-                               known->id));
+    throw ApiError(
+        ProblemType::key_reused,
+        fmt::format("this Idempotency-Key came with another request before and made study "
+                    "{}; take a new key for a new study",
+                    known->id));
   }
   const StudyRecord study = make_study(context, request.http, options, hash);
   return accepted(context, find_study(context, study.id), false);

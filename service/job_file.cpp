@@ -32,8 +32,8 @@ json to_json(const JobFile& file) {
 std::optional<JobState> read_held(const json& value) {
   if (value.is_null()) return std::nullopt;
   const auto state = job_state(value.get<std::string>());
-  if (state != JobState::paused && state != JobState::cancelled) {
-    throw std::invalid_argument("held is neither paused nor cancelled");
+  if (state != JobState::paused && state != JobState::cancelled && state != JobState::failed) {
+    throw std::invalid_argument("held is neither paused nor cancelled nor failed");
   }
   return state;
 }

@@ -18,7 +18,7 @@ struct JobFile {
   std::int64_t created_ms = 0;  ///< Unix time, ms
   std::string key;              ///< Idempotency-Key, may be empty
   std::string body_hash;        ///< of the body that came with the key
-  /// paused or cancelled while the job is held; otherwise the outcome tells.
+  /// paused, cancelled or failed while the job is held; otherwise the outcome tells.
   std::optional<JobState> held;
   friend bool operator==(const JobFile&, const JobFile&) = default;
 };

@@ -102,11 +102,11 @@ bool update_job(SqliteDb& db, const Job& before, const Job& after) {
   SqliteStatement(db,
                   "UPDATE jobs SET state = ?1, pending_stop = ?2, updated_ms = ?3, ended_ms = ?4, "
                   "token = ?5, crashes = ?6, reason = ?7, end_time = ?8, progress = ?9, "
-                  "outcome = ?10 "
-                  "WHERE id = ?11 AND state = ?12 AND pending_stop = ?13 AND token = ?14",
+                  "outcome = ?10, estimate = ?11 "
+                  "WHERE id = ?12 AND state = ?13 AND pending_stop = ?14 AND token = ?15",
                   to_string(after.state), to_string(after.pending_stop), after.updated_ms,
                   after.ended_ms, after.token, after.crashes, after.reason, after.end_time,
-                  after.progress, after.outcome, before.id, to_string(before.state),
+                  after.progress, after.outcome, after.estimate, before.id, to_string(before.state),
                   to_string(before.pending_stop), before.token)
       .run();
   return db.changes() == 1;

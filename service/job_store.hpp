@@ -20,7 +20,7 @@ class JobStoreError : public std::runtime_error {
     not_found,   ///< no such job
     conflict,    ///< the transition is not allowed in the job's state, or the attempt's token is
                  ///< stale
-    key_reused,  ///< the Idempotency-Key came with another body before
+    key_reused,  ///< the Idempotency-Key came with another request before
     full,        ///< the queue's limit
     in_use,      ///< another service has this data folder
     disk_full,
@@ -43,6 +43,7 @@ struct JobChange {
   std::optional<std::string> outcome;
   std::optional<int> crashes;
   std::optional<double> end_time;
+  std::optional<std::string> estimate;
   std::string event_detail = "{}";  ///< JSON object for the event row
 };
 

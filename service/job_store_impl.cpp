@@ -18,8 +18,10 @@ using Fault = JobStoreError::Fault;
 /// Longer than any caller waits; keeps infinities and NaN from the clock.
 constexpr double kLongestWait = 3600.0;  // s
 
+/// What a rebuild could not tell from the outcome: a job that failed may have left none.
 std::optional<JobState> held(JobState state) {
-  const bool is_held = state == JobState::paused || state == JobState::cancelled;
+  const bool is_held =
+      state == JobState::paused || state == JobState::cancelled || state == JobState::failed;
   return is_held ? std::optional(state) : std::nullopt;
 }
 
@@ -51,7 +53,8 @@ std::optional<Job> JobStore::Impl::job_of_key(const std::string& key,
   if (!row) return std::nullopt;
   if (row->body_hash != body_hash) {
     throw JobStoreError(Fault::key_reused,
-                        fmt::format("this Idempotency-Key came with another body before and made "
+                        fmt::format("this Idempotency-Key came with another request before (body, "
+                                    "label, priority or threads differ) and made "
                                     "job {}; take a new key for a new job",
                                     row->job));
   }

@@ -71,10 +71,15 @@ const std::string* QueryReader::take(std::string_view name) {
 std::optional<std::string> QueryReader::text(std::string_view name, std::size_t longest) {
   const std::string* value = take(name);
   if (value == nullptr) return std::nullopt;
-  if (value->size() <= longest && is_plain_text(*value)) return *value;
-  reject(name, fmt::format("must be at most {} bytes of UTF-8 without control characters, but has "
-                           "{} bytes",
-                           longest, value->size()));
+  // UTF-8: every character has one byte that does not go on another.
+  const auto length =
+      static_cast<std::size_t>(std::count_if(value->begin(), value->end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+      }));
+  if (length <= longest && is_plain_text(*value)) return *value;
+  reject(name, fmt::format("must be at most {} characters of UTF-8, none of them a control "
+                           "character, but has {}",
+                           longest, length));
   return std::nullopt;
 }
 

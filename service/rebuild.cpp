@@ -126,6 +126,13 @@ JobState state_after(const Ending& ending, double end_time) {
   }
 }
 
+/// Why an ended job ended, if its outcome is of that end.
+std::string reason_of(const Job& job, const std::optional<Ending>& ending) {
+  if (ending && state_after(*ending, job.end_time) == job.state) return ending->reason;
+  if (job.state != JobState::failed) return "";
+  return "it had failed before its row was made anew from its folder; its log tells more";
+}
+
 void decide_state(Job& job, const JobPaths& paths, const std::optional<JobFile>& file,
                   const std::optional<Ending>& ending) {
   if (ending) job.state = state_after(*ending, job.end_time);
@@ -135,7 +142,7 @@ void decide_state(Job& job, const JobPaths& paths, const std::optional<JobFile>&
   if (is_ended(job.state)) {
     const fs::path last = ending ? paths.outcome() : job_file_path(paths.root());
     job.ended_ms = std::max<std::int64_t>(write_time_ms(last), 1);
-    job.reason = ending ? ending->reason : "";
+    job.reason = reason_of(job, ending);
   } else {
     job.reason = fmt::format("its row was made anew from its folder; it goes on {}{}",
                              where_it_goes_on(paths),

@@ -140,6 +140,7 @@ Job after_transition(const Job& job, const Transition& transition, const JobChan
   if (change.outcome) after.outcome = *change.outcome;
   if (change.crashes) after.crashes = *change.crashes;
   if (change.end_time) after.end_time = *change.end_time;
+  if (change.estimate) after.estimate = *change.estimate;
   return after;
 }
 

@@ -396,6 +396,22 @@ class Failures(Sandbox):
         self.assertIn("free-fall", verdicts)
         self.assertIn("without a line above", complaint)
 
+    def test_a_full_disk_behind_standard_output_is_told(self):
+        self.expect(0, "run", self.write_scene(), "--folder", "job")
+        for command in (["report", "job", "--format", "html"], ["sensors", "job"],
+                        ["sensors", "job", "P1"], ["stability", "--list"],
+                        ["inspect", "job/series.h5"]):
+            with open("/dev/full", "w") as full:
+                result = subprocess.run([SLUICE, *command], cwd=self.folder, text=True, stdout=full,
+                                        stderr=subprocess.PIPE)
+            self.assertEqual(result.returncode, 5, command)
+            self.assertIn("is not whole", result.stderr)
+
+    def test_a_filter_time_that_is_no_time_is_a_usage_error(self):
+        self.expect(0, "run", self.write_scene(), "--folder", "job")
+        for tau in ("nan", "inf", "0"):
+            self.expect(2, "sensors", "job", "P1", "--filter", "gaussian", "--tau", tau)
+
     def test_the_stability_suite_fails_for_a_scheme_that_misses_a_gate(self):
         # Molteni-Colagrossi and Shepard lift a film of one layer of particles.
         paper = scene()["numerics"] | {"kernel": "truncated_gaussian"}

@@ -37,6 +37,15 @@ TEST(ApiSubmit, AcceptsASceneAndSaysWhereTheJobIs) {
   EXPECT_EQ(service.get("/v1/jobs/" + id).status, 200);
 }
 
+TEST(ApiSubmit, CountsTheCharactersOfALabelAndNotItsBytes) {
+  Service service;
+  std::string label;
+  for (int n = 0; n < 100; ++n) label += "%C3%A4";
+  EXPECT_EQ(service.post("/v1/jobs?label=" + label, tiny_scene(0.1)).status, 202);
+  expect_problem(service.post("/v1/jobs?label=a" + label, tiny_scene(0.1)), 400,
+                 "invalid-parameter");
+}
+
 TEST(ApiSubmit, KeepsTheSceneAsItWasSentAndWhatRebuildsTheRow) {
   Service service;
   const std::string id = service.submit("?label=kept&priority=3");
