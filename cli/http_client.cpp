@@ -51,8 +51,9 @@ int read_port(std::string_view rest, std::string_view whole) {
   const char* const end = rest.data() + rest.size();
   const auto [stop, error] = std::from_chars(rest.data(), end, port);
   const bool whole_number = error == std::errc{} && stop == end;
-  if (stop != rest.data() && stop != end)
+  if (stop != rest.data() && stop != end) {
     refuse(whole, "after the scheme stand only a host and a port");
+  }
   if (!whole_number || port < 1 || port > 65535) {
     refuse(whole, "the port must be a number from 1 to 65535");
   }

@@ -45,8 +45,7 @@ struct ApiContext {
   Slots waits{kMaxWaits};
   std::counting_semaphore<kMaxViews> views{kMaxViews};
   std::atomic<bool> draining = false;
-  std::mutex
-      resumes;  ///< one at a time, because an extension writes its job's scene before its row
+  std::mutex resumes;        ///< one at a time: an extension writes the scene before the row
   std::mutex study_changes;  ///< one at a time: each touches many jobs
   std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice
 };

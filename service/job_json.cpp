@@ -14,17 +14,7 @@ Json text_or_null(std::string_view text) { return text.empty() ? Json(nullptr) :
 
 Json progress_json(const Job& job) {
   Json progress = stored_json(job.progress);
-  if (!progress.is_object()) return progress;
-  progress.erase("event");
-  const Json outcome = stored_json(job.outcome);
-  if (job.state == JobState::completed && outcome.is_object()) {
-    // The last line of a worker is of up to a second before the end.
-    for (const char* const key : {"step", "time"}) {
-      if (outcome.contains(key)) progress[key] = outcome[key];
-    }
-    progress["fraction"] = 1.0;
-    progress["eta"] = 0.0;
-  }
+  if (progress.is_object()) progress.erase("event");
   return progress;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/scene/code_points.hpp"
 #include "engine/scene/problems.hpp"
 
 namespace sluice {
@@ -71,11 +72,7 @@ const std::string* QueryReader::take(std::string_view name) {
 std::optional<std::string> QueryReader::text(std::string_view name, std::size_t longest) {
   const std::string* value = take(name);
   if (value == nullptr) return std::nullopt;
-  // UTF-8: every character has one byte that does not go on another.
-  const auto length =
-      static_cast<std::size_t>(std::count_if(value->begin(), value->end(), [](char c) {
-        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-      }));
+  const std::size_t length = count_code_points(*value);
   if (length <= longest && is_plain_text(*value)) return *value;
   reject(name, fmt::format("must be at most {} characters of UTF-8, none of them a control "
                            "character, but has {}",

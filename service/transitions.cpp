@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
+
+#include "service/job_json.hpp"
 
 namespace sluice {
 namespace {
@@ -124,6 +127,23 @@ Transition require_transition(const Job& job, JobAction action, const std::strin
   return *transition;
 }
 
+namespace {
+
+/// The last line of a worker is of up to a second before the end: that line, at the end.
+std::string progress_at_end(const std::string& last, const std::string& outcome_text) {
+  nlohmann::ordered_json progress = stored_json(last);
+  const nlohmann::ordered_json outcome = stored_json(outcome_text);
+  if (!progress.is_object() || !outcome.is_object()) return last;
+  for (const char* const key : {"step", "time"}) {
+    if (outcome.contains(key)) progress[key] = outcome[key];
+  }
+  progress["fraction"] = 1.0;
+  progress["eta"] = 0.0;
+  return progress.dump();
+}
+
+}  // namespace
+
 Job after_transition(const Job& job, const Transition& transition, const JobChange& change,
                      std::int64_t now_ms) {
   Job after = job;
@@ -141,6 +161,9 @@ Job after_transition(const Job& job, const Transition& transition, const JobChan
   if (change.crashes) after.crashes = *change.crashes;
   if (change.end_time) after.end_time = *change.end_time;
   if (change.estimate) after.estimate = *change.estimate;
+  if (after.state == JobState::completed) {
+    after.progress = progress_at_end(job.progress, after.outcome);
+  }
   return after;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/ladder/markup.hpp"
+#include "engine/scene/code_points.hpp"
 
 namespace sluice {
 namespace {
@@ -225,10 +226,8 @@ Legend lay_out(const std::vector<LegendEntry>& entries) {
   Legend legend;
   double x = kLeft;
   for (const LegendEntry& entry : entries) {
-    const auto letters = std::count_if(entry.name.begin(), entry.name.end(), [](char c) {
-      return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-    });
-    const double width = kLegendKey + kLetter * static_cast<double>(letters) + 18.0;
+    const auto letters = static_cast<double>(count_code_points(entry.name));
+    const double width = kLegendKey + kLetter * letters + 18.0;
     if (legend.rows == 0 || (x > kLeft && x + width > kWidth)) {
       ++legend.rows;
       x = kLeft;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/ladder/markup.hpp"
+#include "engine/scene/code_points.hpp"
 
 namespace sluice {
 namespace {
@@ -14,11 +15,7 @@ namespace {
 constexpr std::string_view kNone = "-";
 
 /// Columns that a terminal shows for a UTF-8 text of plain letters.
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
-}
+std::size_t width_of(std::string_view text) { return count_code_points(text); }
 
 bool looks_numeric(std::string_view cell) {
   if (cell.empty() || cell == kNone) return true;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "engine/scene/code_points.hpp"
+
 namespace sluice {
 namespace {
 
@@ -13,13 +15,6 @@ bool is_name_character(char c) {
 }
 
 bool is_control_character(char c) { return (c >= 0 && c < ' ') || c == 0x7f; }
-
-// Bytes that do not continue a UTF-8 sequence; the JSON reader has checked the encoding.
-std::size_t count_code_points(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
-}
 
 }  // namespace
 
