@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "engine/run/schedule.hpp"
+#include "engine/scene/open_share.hpp"
 
 namespace sluice {
 namespace {
@@ -17,11 +18,15 @@ double store_probe(const Probe& probe, std::span<double> values) {
   return wet ? probe.weight : 0.0;
 }
 
+double smoothing_length_of(const Sensor& sensor, const Scene& scene) {
+  return sensor.smoothing_length > 0.0 ? sensor.smoothing_length : scene.method.smoothing_length;
+}
+
 /// eq. 11 at a point, Pa.
-class PressureSampler final : public Sampler {
+class PressureSampler : public Sampler {
  public:
-  PressureSampler(const Vec& position, double smoothing_length)
-      : position_(position), smoothing_length_(smoothing_length) {}
+  PressureSampler(const Sensor& sensor, const Scene& scene)
+      : position_(sensor.position), smoothing_length_(smoothing_length_of(sensor, scene)) {}
   std::vector<Series::Column> columns() const override { return {{"value", "Pa"}}; }
   double sample(const Solver& solver, std::span<double> values) const override {
     return store_probe(solver.pressure_at(position_, smoothing_length_), values);
@@ -30,6 +35,32 @@ class PressureSampler final : public Sampler {
  private:
   Vec position_;
   double smoothing_length_;
+};
+
+/// The mean over fluid and air around a point, Pa: the fluid's by eq. 11, the air's in the rest of
+/// what is open there. A jet of a particle's width that hits the middle of a sensor presses on a
+/// part of its face; eq. 11 takes the jet's pressure for that of all of it. Where no fluid is, the
+/// air's pressure has weight 0.
+class FacePressureSampler final : public PressureSampler {
+ public:
+  FacePressureSampler(const Sensor& sensor, const Scene& scene)
+      : PressureSampler(sensor, scene),
+        open_(scene, sensor.position, smoothing_length_of(sensor, scene)),
+        air_(*sensor.air_pressure) {}
+  double sample(const Solver& solver, std::span<double> values) const override {
+    const double filled = PressureSampler::sample(solver, values);
+    const double open = open_.at(solver.time());
+    if (filled == 0.0) {
+      values[0] = air_;
+    } else if (filled < open) {
+      values[0] = air_ + (values[0] - air_) * filled / open;
+    }
+    return filled;
+  }
+
+ private:
+  OpenShare open_;
+  double air_;
 };
 
 /// `x` moved half a support away from the tank's walls. On the wall itself half of the kernel lies
@@ -136,9 +167,8 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene) 
   const Method& method = scene.method;
   switch (sensor.kind) {
     case SensorKind::pressure:
-      return std::make_unique<PressureSampler>(sensor.position, sensor.smoothing_length > 0.0
-                                                                    ? sensor.smoothing_length
-                                                                    : method.smoothing_length);
+      if (sensor.air_pressure) return std::make_unique<FacePressureSampler>(sensor, scene);
+      return std::make_unique<PressureSampler>(sensor, scene);
     case SensorKind::surface_height:
     case SensorKind::column_height:
       return std::make_unique<SurfaceHeightSampler>(clear_of_walls(sensor.position.x(), scene));

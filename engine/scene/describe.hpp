@@ -244,11 +244,22 @@ void describe_smoothing_length(Archive& a, Sensor& sensor) {
 }
 
 template <class Archive>
+void describe_air_pressure(Archive& a, Sensor& sensor) {
+  a.number("air_pressure", sensor.air_pressure,
+           {.about = "pressure of the air in what neither fluid nor wall fills around the sensor; "
+                     "the value is then the mean over fluid and air, which its face feels",
+            .unit = "Pa",
+            .range = from(-1e12, 1e12),
+            .otherwise = "the mean over the fluid alone, eq. 11"});
+}
+
+template <class Archive>
 void describe_kind(Archive& a, Sensor& sensor) {
   switch (sensor.kind) {
     case SensorKind::pressure:
       describe_position(a, sensor);
       describe_smoothing_length(a, sensor);
+      describe_air_pressure(a, sensor);
       return;
     case SensorKind::arrival:
       describe_position(a, sensor);

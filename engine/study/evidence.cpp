@@ -86,6 +86,7 @@ PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& r
   evidence.height = pair.sensor->position.y();
   evidence.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
                                                                   : scene.method.smoothing_length;
+  evidence.air_pressure = pair.sensor->air_pressure;
   evidence.reference = pair.reference->name;
   evidence.peak_statistics = pair.reference->peak;
   evidence.simulation = measure(reference.pressure_times, averages);

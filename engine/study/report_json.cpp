@@ -33,6 +33,7 @@ Json pressure_json(const PressureEvidence& one) {
               {"reference", one.reference},
               {"height_m", one.height},
               {"smoothing_length_m", one.smoothing_length},
+              {"air_pressure_pa", value_of(one.air_pressure)},
               {"relative_l2", value_of(one.relative_l2)},
               {"simulation", measures_json(one.simulation)},
               {"experiment", measures_json(one.experiment)},

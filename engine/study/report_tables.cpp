@@ -75,6 +75,8 @@ Table pressure_table(const Evidence& evidence) {
            [](const auto& one) { return fmt::format("{:g}", one.height * 1e3); });
   rows.add("h of the sensor, mm", "",
            [](const auto& one) { return fmt::format("{:g}", one.smoothing_length * 1e3); });
+  rows.add("air around it, Pa (-: eq. 11)", "",
+           [](const auto& one) { return cell(one.air_pressure); });
   rows.add("relative L2", "", [](const auto& one) { return cell(one.relative_l2); });
   rows.both("arrival, T", [](const auto& m) { return m.arrival; });
   add_peaks(rows);

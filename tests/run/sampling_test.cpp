@@ -1,0 +1,117 @@
+#include "engine/run/sampling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/run/scenes.hpp"
+
+namespace sluice {
+namespace {
+
+using testing::small_dam_break;
+
+constexpr double kAir = -300.0;
+
+/// A solver with these particles, all of one pressure, and the scene's walls left out: sampling
+/// looks at the fluid and at the scene's shape.
+Solver fluid_at(const Scene& scene, const std::vector<Vec>& places, double pressure) {
+  SolverState state;
+  const double c = scene.method.sound_speed;
+  for (const Vec& place : places) {
+    Particles& p = state.particles;
+    p.id.push_back(static_cast<double>(p.size()));
+    p.x.push_back(place.x());
+    p.y.push_back(place.y());
+    p.vx.push_back(0.0);
+    p.vy.push_back(0.0);
+    p.density_excess.push_back(pressure / (c * c));
+  }
+  return {scene.method, state, {}, {}};
+}
+
+/// Particles in columns from the right wall of the tank to the left, all its height.
+std::vector<Vec> columns_at_wall(const Scene& scene, int columns) {
+  const double dx = scene.method.spacing;
+  std::vector<Vec> places;
+  for (int column = 0; column < columns; ++column) {
+    for (int row = 0; (row + 0.5) * dx < scene.tank->height; ++row) {
+      places.emplace_back(scene.tank->width - (column + 0.5) * dx, (row + 0.5) * dx);
+    }
+  }
+  return places;
+}
+
+Sensor at_wall(const Scene& scene, std::optional<double> air) {
+  Sensor sensor;
+  sensor.name = "P";
+  sensor.position = {scene.tank->width, 0.15};
+  sensor.air_pressure = air;
+  return sensor;
+}
+
+struct Sample {
+  double value;
+  double weight;
+};
+
+Sample sample(const Scene& scene, const Sensor& sensor, const Solver& solver) {
+  std::vector<double> values(1);
+  const double weight = make_sampler(sensor, scene)->sample(solver, values);
+  return {values[0], weight};
+}
+
+TEST(PressureSampler, CoveredByFluidItsFaceFeelsTheFluidAlone) {
+  const Scene scene = small_dam_break();
+  const Solver solver = fluid_at(scene, columns_at_wall(scene, 12), 1000.0);
+  const Sample face = sample(scene, at_wall(scene, kAir), solver);
+  const Sample plain = sample(scene, at_wall(scene, std::nullopt), solver);
+  EXPECT_NEAR(plain.value, 1000.0, 1e-9);
+  // On a lattice of h = dx the weight is a half to 1e-3; what lacks is taken for air.
+  EXPECT_NEAR(face.value, 1000.0, 1e-2 * (1000.0 - kAir));
+  EXPECT_EQ(face.weight, plain.weight);
+}
+
+TEST(PressureSampler, AThinJetPressesOnTheFaceByItsShareOnly) {
+  const Scene scene = small_dam_break();
+  for (const int columns : {1, 2}) {
+    const Solver solver = fluid_at(scene, columns_at_wall(scene, columns), 1000.0);
+    const Sample plain = sample(scene, at_wall(scene, std::nullopt), solver);
+    const Sample face = sample(scene, at_wall(scene, kAir), solver);
+    EXPECT_NEAR(plain.value, 1000.0, 1e-9) << "eq. 11 takes the jet's pressure for all";
+    ASSERT_LT(plain.weight, 0.5);
+    EXPECT_NEAR(face.value, kAir + (1000.0 - kAir) * plain.weight / 0.5, 1e-9);
+    EXPECT_EQ(face.weight, plain.weight);
+  }
+}
+
+TEST(PressureSampler, TheFaceHasNoJumpWhereASingleParticleComes) {
+  const Scene scene = small_dam_break();
+  const double support = scene.method.support();
+  double last = kAir;
+  for (double gap = 1.001 * support; gap > 0.0; gap -= support / 100) {
+    const Solver solver = fluid_at(scene, {{scene.tank->width - gap, 0.15}}, 1000.0);
+    const Sample face = sample(scene, at_wall(scene, kAir), solver);
+    EXPECT_GE(face.value, last);
+    EXPECT_LT(face.value - last, 0.05 * (1000.0 - kAir)) << "at " << gap;
+    last = face.value;
+  }
+  const Solver near = fluid_at(scene, {{scene.tank->width - 0.999 * support, 0.15}}, 1000.0);
+  EXPECT_NEAR(sample(scene, at_wall(scene, std::nullopt), near).value, 1000.0, 1e-9)
+      << "eq. 11 jumps";
+}
+
+TEST(PressureSampler, WithoutFluidTheFaceFeelsTheAirWithoutWeight) {
+  const Scene scene = small_dam_break();
+  const Solver solver = fluid_at(scene, {{0.1, 0.1}}, 1000.0);
+  const Sample face = sample(scene, at_wall(scene, kAir), solver);
+  EXPECT_EQ(face.value, kAir);
+  EXPECT_EQ(face.weight, 0.0);
+  const Sample plain = sample(scene, at_wall(scene, std::nullopt), solver);
+  EXPECT_TRUE(std::isnan(plain.value));
+  EXPECT_EQ(plain.weight, 0.0);
+}
+
+}  // namespace
+}  // namespace sluice
