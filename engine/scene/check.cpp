@@ -147,6 +147,14 @@ void check_wall_drag(const Scene& scene, Problems& problems) {
   if (m.wall_drag && m.physical_viscosity) refuse("wall_drag", "physical_viscosity");
 }
 
+void check_shifting(const Scene& scene, Problems& problems) {
+  const Method& m = scene.method;
+  if (!m.shifting || m.integrator == Integrator::kick_drift_kick) return;
+  problems.add("/numerics/particle_shifting",
+               "stands beside the integrator modified_leap_frog, whose half level it would leave "
+               "behind; remove it or use kick_drift_kick");
+}
+
 /// A scheme whose errors fill the flow within the run is refused; slower growth is only told.
 void check_stability(const Scene& scene, Problems& problems) {
   if (stability_outlook(scene) != Outlook::unstable) return;
@@ -230,6 +238,7 @@ void check(const Document& document, StabilityCheck stability, Problems& problem
   check_particle_count(scene, problems);
   check_gate(scene, problems);
   check_wall_drag(scene, problems);
+  check_shifting(scene, problems);
   if (!placed) return;
   check_domain(scene, document, problems);
   if (problems.clean({"/domain"})) check_sensors(scene, problems);

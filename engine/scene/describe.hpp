@@ -190,6 +190,14 @@ void describe(Archive& a, WallDrag& term) {
 }
 
 template <class Archive>
+void describe(Archive& a, ParticleShifting& term) {
+  a.number("coefficient", term.coefficient,
+           {.about = "A: a particle moves by A h |v| dt grad C against the gradient of the "
+                     "concentration C, at most 0.1 particle distances in a step",
+            .range = above(0, 10)});
+}
+
+template <class Archive>
 void describe(Archive& a, Reinitialisation& term) {
   a.integer("interval", term.interval,
             {.about = "steps from one reinitialisation to the next", .range = from(1, 1e6)});
@@ -221,6 +229,9 @@ void describe_numerics(Archive& a, Method& method) {
              .otherwise = "none"});
   a.word("wall_pressure", kWallPressureWords, method.wall_pressure,
          {.about = "pressure of the walls' dummy particles, eq. 9"});
+  a.section("particle_shifting", method.shifting,
+            {.about = "moves particles inside the fluid to where others lack; with kick_drift_kick",
+             .otherwise = "none"});
   a.section("reinitialisation", method.reinitialisation,
             {.about = "density reinitialisation, eq. 10", .otherwise = "none"});
 }

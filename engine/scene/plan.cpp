@@ -81,6 +81,12 @@ void plan_passes(const Scene& scene, const Lists& passes) {
   passes.either(!m.gravity.isZero(0.0), "gravity", "body acceleration of eq. 5", "gravity");
   passes.run("update", "time step of eq. 18 and integration",
              fmt::format("numerics.integrator {}", word_for(kIntegratorWords, m.integrator)));
+  const std::string shifting =
+      m.shifting ? fmt::format("towards where particles lack, A {}, in the sweep of eq. 4",
+                               m.shifting->coefficient)
+                 : "towards where particles lack";
+  passes.either(m.shifting.has_value(), "particle_shifting", shifting,
+                "numerics.particle_shifting");
   const std::string reinitialisation =
       m.reinitialisation ? fmt::format("eq. 10, every {} steps", m.reinitialisation->interval)
                          : "eq. 10";

@@ -24,6 +24,8 @@ constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 
+constexpr double kMostShift = 0.1;  // dx in a step
+
 /// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source, which
 /// lifts still water for ever. Only where the hydrostatic part is diffused as well must the walls
 /// hold against it.
@@ -140,6 +142,8 @@ class Engine final : public Solver::Impl {
   void note_motion(const Motion& seen);
   [[nodiscard]] bool places_are_finite() const;
   void choose_time_step();
+  [[nodiscard]] const SumBlocks& density_sums() const;
+  [[nodiscard]] Shift shift_of_step() const;
   [[nodiscard]] bool reinitialisation_due(std::uint64_t step) const;
 
   // Views.
@@ -423,8 +427,9 @@ void Engine<T>::make_lists() {
     build_pair_list(team_, sweeps_, range, wall, fluid, wall_to_fluid_);
   }
   sums_.place(fluid_to_fluid_, layout.chunk,
-              method.integrator == Integrator::modified_leap_frog ? kRateSums.stride
-                                                                  : kAccelerationSums.stride);
+              method.integrator == Integrator::modified_leap_frog
+                  ? kRateSums.stride
+                  : std::max(density_sums().stride, kAccelerationSums.stride));
 }
 
 template <typename T>
@@ -552,6 +557,19 @@ void Engine<T>::choose_time_step() {
 }
 
 template <typename T>
+const SumBlocks& Engine<T>::density_sums() const {
+  return method.shifting ? kDensityAndShiftingSums : kDensitySums;
+}
+
+template <typename T>
+Shift Engine<T>::shift_of_step() const {
+  const double ratio = method.spacing / method.smoothing_length;
+  const double scale = ratio * ratio * kernel_slope_scale(method.kernel);
+  return {method.shifting->coefficient * time_step * scale, scale, kMostShift * method.spacing,
+          method.reference_density / (method.sound_speed * method.sound_speed) * method.gravity};
+}
+
+template <typename T>
 void Engine<T>::step() {
   if (method.integrator == Integrator::modified_leap_frog) {
     step_leap_frog();
@@ -609,9 +627,10 @@ void Engine<T>::step_kick_drift_kick() {
   sum_pairs(sweeps_.density);
   advance_tracks(0.5 * time_step);
   keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
-    const Rates<T> rates = gather(chunk, kDensitySums);
+    const Rates<T> rates = gather(chunk, density_sums());
     for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.density_drift(p, rates, time_step);
+      if (method.shifting) sweeps_.updates.shift(p, rates, shift_of_step());
       sweeps_.updates.write_places(p, scales_, pairs_);
       sweeps_.updates.write_densities(p, scales_, pairs_);
       compare_with_tracks(p, seen);

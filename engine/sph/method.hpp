@@ -62,6 +62,13 @@ struct WallDrag {
   double coefficient = 0.01;  ///< skin friction coefficient Cf, dimensionless
 };
 
+/// Particle shifting (Lind et al. 2012, as Skillen et al. 2013 scale it with the speed): a particle
+/// inside the fluid moves by -A h |v| dt grad C, C the concentration of particles, so that no
+/// gaps open along streamlines. One at a free surface stays.
+struct ParticleShifting {
+  double coefficient = 2.0;  ///< A, dimensionless
+};
+
 /// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,
 /// and go row by row as the lower edge passes them. Nothing of it is state: it follows from t.
 struct LiftedWall {
@@ -101,7 +108,8 @@ struct Method {
   std::optional<ArtificialViscosity> viscosity;
   std::optional<WallFriction> wall_friction;
   std::optional<PhysicalViscosity> physical_viscosity;
-  std::optional<WallDrag> wall_drag;  ///< at most one of these three
+  std::optional<WallDrag> wall_drag;         ///< at most one of these three
+  std::optional<ParticleShifting> shifting;  ///< with kick_drift_kick only
   std::optional<Reinitialisation> reinitialisation;
   WallPressure wall_pressure = WallPressure::extrapolated;
   std::optional<LiftedWall> lifted_wall;

@@ -115,9 +115,13 @@ struct SumBlocks {
   std::size_t density = 0;
   std::size_t y = 0;
   std::size_t x = 0;
+  std::size_t trace = 0;
 };
 inline constexpr SumBlocks kDensitySums{kCluster, 0, 0, 0};
 inline constexpr SumBlocks kAccelerationSums{2 * kCluster, 0, 0, kCluster};
+/// With particle shifting: eq. 4, and sums that tell where particles lack (ShiftingTerm).
+inline constexpr SumBlocks kDensityAndShiftingSums{4 * kCluster, 0, kCluster, 2 * kCluster,
+                                                   3 * kCluster};
 inline constexpr SumBlocks kRateSums{4 * kCluster, 0, kCluster, 2 * kCluster};
 /// eq. 10: `density` is the numerator, `x` the divisor.
 inline constexpr SumBlocks kReinitialisationSums{2 * kCluster, 0, 0, kCluster};

@@ -127,6 +127,24 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x) {
   }
 }
 
+template <typename T, class V>
+HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x, V trace) {
+  const typename Blocks<T>::D d;
+  constexpr SumBlocks blocks = kDensityAndShiftingSums;
+  if constexpr (Blocks<T>::lanes == blocks.stride) {
+    const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
+    const V odd = hn::ConcatLowerLower(d, trace, y) + hn::ConcatUpperUpper(d, trace, y);
+    const V sums =
+        hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
+    hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+  } else {
+    subtract_from_j(to + blocks.density, density);
+    subtract_from_j(to + blocks.y, y);
+    subtract_from_j(to + blocks.x, x);
+    subtract_from_j(to + blocks.trace, trace);
+  }
+}
+
 /// Positions of the particles i as seen from the tile of a cluster j.
 template <typename T>
 struct TileShift {
@@ -184,8 +202,9 @@ enum class Drag { none, wall_friction, physical_viscosity, wall_drag };
 
 /// Which terms a rate sweep sums.
 enum class Sums { density, acceleration, both };
-template <Sums kSums, bool kDiffusion, Viscosity kViscosity, Drag kDrag>
+template <Sums kSums, bool kDiffusion, Viscosity kViscosity, Drag kDrag, bool kShifting = false>
 struct Terms {
+  static_assert(!kShifting || kSums == Sums::density);
   static constexpr bool density = kSums != Sums::acceleration;
   static constexpr bool acceleration = kSums != Sums::density;
   static constexpr bool diffusion = density && kDiffusion;
@@ -194,16 +213,18 @@ struct Terms {
       acceleration && kDrag == Drag::wall_friction ? Viscosity::linear : Viscosity::none;
   static constexpr bool physical = acceleration && kDrag == Drag::physical_viscosity;
   static constexpr bool wall_drag = acceleration && kDrag == Drag::wall_drag;
-  static constexpr SumBlocks blocks = !acceleration ? kDensitySums
-                                      : !density    ? kAccelerationSums
-                                                    : kRateSums;
+  static constexpr bool shifting = kShifting;
+  static constexpr SumBlocks blocks = shifting        ? kDensityAndShiftingSums
+                                      : !acceleration ? kDensitySums
+                                      : !density      ? kAccelerationSums
+                                                      : kRateSums;
 };
 
 /// What the rate sums need of the particles i of a vector, and the sums.
 template <class V>
 struct RateOfI {
   V u, v, speed, density, half, volume, diffused, stress;
-  V density_sum, x_sum, y_sum;
+  V density_sum, x_sum, y_sum, trace_sum;
 };
 
 /// Adds the pairs of one list to the particles i and, where `sums` is given, to the particles j.
@@ -221,17 +242,29 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
     if constexpr (Terms::density || kViscosity != Viscosity::none) {
       pair.approach = hn::MulAdd(i.u - load_j(other.u + j), dx, (i.v - load_j(other.v + j)) * dy);
     }
-    V density_j, x_j, y_j;
+    V density_j, x_j, y_j, trace_j;
     if constexpr (Terms::density) {
       V exchange = hn::Zero(d);
       if constexpr (Terms::diffusion) {
         exchange = diffusion.summand(d, i.diffused, load_j(other.diffused + j));
       }
       const V summand = Continuity::add_to(exchange, pair, i.density);
-      i.density_sum = hn::MulAdd(g * load_j(other.volume + j), summand, i.density_sum);
+      const V volume_j = g * load_j(other.volume + j);
+      i.density_sum = hn::MulAdd(volume_j, summand, i.density_sum);
+      if constexpr (Terms::shifting) {
+        i.x_sum = i.x_sum + ShiftingTerm::x(pair, volume_j);
+        i.y_sum = i.y_sum + ShiftingTerm::y(pair, volume_j);
+        i.trace_sum = i.trace_sum + ShiftingTerm::trace(pair, volume_j);
+      }
       if constexpr (kShare == Share::both) {
         const V density = hn::Set(d, T{1}) + load_j(other.excess + j);
-        density_j = g * i.volume * Continuity::add_for_j(exchange, pair, density);
+        const V volume_i = g * i.volume;
+        density_j = volume_i * Continuity::add_for_j(exchange, pair, density);
+        if constexpr (Terms::shifting) {
+          x_j = ShiftingTerm::x(pair, volume_i);
+          y_j = ShiftingTerm::y(pair, volume_i);
+          trace_j = hn::Neg(ShiftingTerm::trace(pair, volume_i));
+        }
       }
     }
     if constexpr (Terms::acceleration) {
@@ -259,6 +292,8 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       T* const to = place_of(sums, Terms::blocks.stride, list, n, part);
       if constexpr (Terms::density && Terms::acceleration) {
         subtract_from_j(to, density_j, y_j, x_j);
+      } else if constexpr (Terms::shifting) {
+        subtract_from_j(to, density_j, y_j, x_j, trace_j);
       } else if constexpr (Terms::density) {
         subtract_from_j(to, density_j);
       } else {
@@ -302,7 +337,7 @@ void sum_rates(const SweepTask<T>& task) {
       if constexpr (Terms::diffusion) i.diffused = load_i(self.diffused + slot);
       if constexpr (Terms::acceleration) i.stress = load_i(self.stress + slot);
       if constexpr (Terms::wall_drag) i.speed = hn::Sqrt(hn::MulAdd(i.u, i.u, i.v * i.v));
-      i.density_sum = i.x_sum = i.y_sum = hn::Zero(d);
+      i.density_sum = i.x_sum = i.y_sum = i.trace_sum = hn::Zero(d);
 
       add_rates<Shape, Terms, Terms::viscosity, Share::both>(*task.to_fluid, c, task.fluid, shift,
                                                              x_i, y_i, viscosity, physical,
@@ -314,10 +349,11 @@ void sum_rates(const SweepTask<T>& task) {
       }
       T* const sums = task.sums + Terms::blocks.stride * c + part;
       if constexpr (Terms::density) add_lanes(i.density_sum, sums + Terms::blocks.density);
-      if constexpr (Terms::acceleration) {
+      if constexpr (Terms::acceleration || Terms::shifting) {
         add_lanes(i.x_sum, sums + Terms::blocks.x);
         add_lanes(i.y_sum, sums + Terms::blocks.y);
       }
+      if constexpr (Terms::shifting) add_lanes(i.trace_sum, sums + Terms::blocks.trace);
     }
   }
 }
@@ -479,8 +515,12 @@ typename Sweeps<T>::Sweep select_rates(const Method& m) {
   };
   // What a sweep does not sum is not a choice: the same loop serves both, and is compiled once.
   if constexpr (kSums == Sums::density) {
-    return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, none, Drag::none>, T>
-                       : &sum_rates<Shape, Terms<kSums, false, none, Drag::none>, T>;
+    const auto with_shifting = [&]<bool kShifting>() -> typename Sweeps<T>::Sweep {
+      return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, none, Drag::none, kShifting>, T>
+                         : &sum_rates<Shape, Terms<kSums, false, none, Drag::none, kShifting>, T>;
+    };
+    return m.shifting ? with_shifting.template operator()<true>()
+                      : with_shifting.template operator()<false>();
   } else if constexpr (kSums == Sums::acceleration) {
     return with_viscosity.template operator()<false>();
   } else {

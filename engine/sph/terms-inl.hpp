@@ -57,6 +57,24 @@ struct DensityDiffusionTerm {
   }
 };
 
+/// Particle shifting (ParticleShifting of method.hpp): -h grad C = sum_j V_j g X_ij, and the trace
+/// of the matrix sum_j V_j g X_ij X_ij, 2 inside the fluid and less where neighbours lack. A
+/// summand before g; x and y change their sign for particle j, the trace does not.
+struct ShiftingTerm {
+  template <class V>
+  static HWY_INLINE V x(const PairGeometry<V>& pair, V volume) {
+    return volume * pair.dx;
+  }
+  template <class V>
+  static HWY_INLINE V y(const PairGeometry<V>& pair, V volume) {
+    return volume * pair.dy;
+  }
+  template <class V>
+  static HWY_INLINE V trace(const PairGeometry<V>& pair, V volume) {
+    return volume * pair.r_sq;
+  }
+};
+
 /// Pressure part of the momentum sum, eq. 5: p_i/rho_i^2 + p_j/rho_j^2.
 struct PressureGradient {
   template <class V>

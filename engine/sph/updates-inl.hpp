@@ -97,6 +97,36 @@ void density_drift(const ParticleSpan& p, const Rates<T>& r, double dt) {
   }
 }
 
+/// By how much a particle is shifted: not at a free surface, where neighbours lack and the gradient
+/// of the concentration is no sign of disorder. A flat surface's trace is 1.5.
+constexpr double kSurfaceTrace = 1.75;
+constexpr double kInsideTrace = 1.9;
+
+template <typename T>
+void shift(const ParticleSpan& p, const Rates<T>& r, const Shift& k) {
+  const State d;
+  const StateVec zero = hn::Zero(d);
+  const StateVec one = hn::Set(d, 1.0);
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
+    const StateVec vx = hn::LoadU(d, p.vx + s);
+    const StateVec vy = hn::LoadU(d, p.vy + s);
+    const StateVec trace = load_sums(r, r.blocks.trace, s) * hn::Set(d, k.trace_scale);
+    const StateVec inside =
+        (trace - hn::Set(d, kSurfaceTrace)) * hn::Set(d, 1.0 / (kInsideTrace - kSurfaceTrace));
+    const StateVec length =
+        hn::Min(hn::Max(inside, zero), one) * hn::Sqrt(vx * vx + vy * vy) * hn::Set(d, k.per_speed);
+    const StateVec x = load_sums(r, r.blocks.x, s) * length;
+    const StateVec y = load_sums(r, r.blocks.y, s) * length;
+    const StateVec way = hn::Sqrt(x * x + y * y);
+    const StateVec most = hn::Set(d, k.most);
+    const StateVec held = hn::IfThenElse(way > most, most / way, one);
+    add_scaled(p.x + s, x * held, 1.0);
+    add_scaled(p.y + s, y * held, 1.0);
+    add_scaled(p.density_excess + s, x * held, k.hydrostatic.x());
+    add_scaled(p.density_excess + s, y * held, k.hydrostatic.y());
+  }
+}
+
 template <typename T>
 void kick(const ParticleSpan& p, const Rates<T>& r, double dt) {
   const State d;
@@ -345,6 +375,7 @@ void fill_updates(Updates<T>& out) {
   out.leap_frog = &leap_frog<T>;
   out.kick_drift = &kick_drift;
   out.density_drift = &density_drift<T>;
+  out.shift = &shift<T>;
   out.kick = &kick<T>;
   out.write_places = &write_places<T>;
   out.write_velocities = &write_velocities<T>;

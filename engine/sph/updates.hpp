@@ -42,6 +42,14 @@ struct Rates {
   Vec gravity = Vec::Zero();        ///< m/s^2
 };
 
+/// Particle shifting over one step.
+struct Shift {
+  double per_speed = 0.0;         ///< A dt times the scale of the sums, s
+  double trace_scale = 0.0;       ///< out of the sums into the trace
+  double most = 0.0;              ///< no particle is shifted farther, m
+  Vec hydrostatic = Vec::Zero();  ///< rho_0 f/c^2, kg/m^4: goes with the place
+};
+
 /// What a pass over a chunk saw. Maxima and minima do not depend on the order of chunks.
 struct Motion {
   double speed_sq = 0.0;         ///< largest, m^2/s^2
@@ -87,6 +95,9 @@ struct Updates {
   void (*kick_drift)(const ParticleSpan&, double dt) = nullptr;
   /// rho += dt Drho/Dt, x += dt/2 v.
   void (*density_drift)(const ParticleSpan&, const Rates<T>&, double dt) = nullptr;
+  /// Shifts particles inside the fluid towards where others lack, and their densities by the
+  /// hydrostatic part of the way.
+  void (*shift)(const ParticleSpan&, const Rates<T>&, const Shift&) = nullptr;
   /// a = rates, v += dt/2 a.
   void (*kick)(const ParticleSpan&, const Rates<T>&, double dt) = nullptr;
   /// State to pair arrays: places (with psi where it is kept), velocities, densities.

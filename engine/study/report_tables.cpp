@@ -169,6 +169,7 @@ std::string scheme_text(const Scene& scene) {
     text += ", free slip";
   }
   if (method.wall_pressure == WallPressure::clamped) text += ", wall pressure clamped";
+  if (method.shifting) text += fmt::format(", shifting A {:g}", method.shifting->coefficient);
   if (method.reinitialisation) {
     text += fmt::format(", reinitialisation every {} steps", method.reinitialisation->interval);
   }

@@ -28,7 +28,8 @@ Json recommended_scheme() {
             {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
             {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}, {"beta", 0.5}}},
             {"wall_drag", {{"coefficient", 0.01}}},
-            {"wall_pressure", "clamped"}}}};
+            {"wall_pressure", "clamped"},
+            {"particle_shifting", {{"coefficient", 2}}}}}};
 }
 
 Json paper_scheme() {
@@ -56,8 +57,10 @@ Json scheme_of(const Json& scene) {
 Json with_scheme(Json scene, const Json& scheme) {
   scene.merge_patch(scheme);
   if (scene.contains("tank")) return scene;
-  for (const char* wall_term : {"wall_pressure", "wall_friction", "wall_drag"}) {
-    scene["numerics"].erase(wall_term);
+  // Shifting conserves no angular momentum: the coarse rotating patch lost 0.003 of its own. Where
+  // nothing is hit there is nothing to mend either.
+  for (const char* term : {"wall_pressure", "wall_friction", "wall_drag", "particle_shifting"}) {
+    scene["numerics"].erase(term);
   }
   return scene;
 }

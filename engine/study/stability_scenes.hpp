@@ -12,13 +12,13 @@ namespace sluice {
 // {smoothing_ratio}}.
 
 /// What the suite holds to its gates unless another is asked for: Wendland kernel with h = 1.5 dx,
-/// kick-drift-kick at C = 1, Fourtakas diffusion, wall friction, wall pressure not below zero.
+/// kick-drift-kick at C = 1, Fourtakas diffusion, wall law, wall pressure not below zero, shifting.
 [[nodiscard]] nlohmann::json recommended_scheme();
 /// The paper's: Gaussian with h = dx, modified leap-frog at C = 0.25, eq. 7, eq. 10 every 20 steps.
 [[nodiscard]] nlohmann::json paper_scheme();
 /// That of a scene.
 [[nodiscard]] nlohmann::json scheme_of(const nlohmann::json& scene);
-/// The scene with the scheme; without its wall terms where there is no tank.
+/// The scene with the scheme; without its wall terms and its shifting where there is no tank.
 [[nodiscard]] nlohmann::json with_scheme(nlohmann::json scene, const nlohmann::json& scheme);
 
 /// Water over the whole width of a tank, in units of its depth H.

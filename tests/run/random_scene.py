@@ -38,7 +38,10 @@ def draw_object(dice, node):
 def draw_numerics(dice, schema):
     numerics = draw_object(dice, schema["properties"]["numerics"])
     # What is unstable by its Courant number is refused: let most be below the limits.
-    step = 0.4 if numerics.get("integrator") != "kick_drift_kick" else 1.2
+    leaps = numerics.get("integrator") != "kick_drift_kick"
+    if leaps and dice.random() < 0.9:
+        numerics.pop("particle_shifting", None)
+    step = 0.4 if leaps else 1.2
     if dice.random() < 0.9:
         numerics["courant"] = dice.uniform(0.1, 1.0) * step
     return numerics

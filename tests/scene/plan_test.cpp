@@ -60,8 +60,9 @@ TEST(Plan, RunsWhatASceneNames) {
   text["sensors"] = json::parse(R"([{"name": "e", "kind": "energy", "interval": 0.1}])");
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   const Plan p = plan(parsed(text));
-  EXPECT_THAT(names(p.passes_left_out), ElementsAre("physical_viscosity", "wall_drag"))
-      << "which may not stand beside wall_friction";
+  EXPECT_THAT(names(p.passes_left_out),
+              ElementsAre("physical_viscosity", "wall_drag", "particle_shifting"))
+      << "which may not stand beside wall_friction, or this integrator";
   EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
   EXPECT_EQ(reason(p.passes, "gate"), "key gate");
   text["numerics"].erase("wall_friction");
@@ -70,7 +71,11 @@ TEST(Plan, RunsWhatASceneNames) {
             "key numerics.physical_viscosity");
   text["numerics"].erase("physical_viscosity");
   text["numerics"]["wall_drag"] = json::object();
+  text["numerics"]["integrator"] = "kick_drift_kick";
+  text["numerics"]["particle_shifting"] = json::object();
   EXPECT_EQ(reason(plan(parsed(text)).passes, "wall_drag"), "key numerics.wall_drag");
+  EXPECT_EQ(reason(plan(parsed(text)).passes, "particle_shifting"),
+            "key numerics.particle_shifting");
 }
 
 TEST(Plan, LeavesOutWhatHoldsAtWallsWhereThereIsNoWall) {

@@ -23,6 +23,7 @@ Method method_of(Integrator integrator, Precision precision) {
   m.precision = precision;
   m.domain = {{-2.0, -2.0}, {2.0, 1.2}};
   m.wall_top = 1.0;
+  if (integrator == Integrator::kick_drift_kick) m.shifting = ParticleShifting{2.0};
   return m;
 }
 
