@@ -77,7 +77,7 @@ struct Sensor {
   /// Pressure only, Pa: of the air in what neither fluid nor wall fills around the point. Absent:
   /// eq. 11, whose mean is over the fluid alone.
   std::optional<double> air_pressure;
-  double interval = 0.0;          ///< s; 0: every step
+  double interval = 0.0;  ///< s; 0: every step
 };
 
 /// Particle snapshots for pictures.

@@ -33,11 +33,11 @@ struct PressureMeasures {
 };
 
 struct PressureEvidence {
-  std::string sensor;             ///< the scene's name for it
-  double height = 0.0;            ///< above the floor, m
-  double smoothing_length = 0.0;  ///< of the sensor, m
+  std::string sensor;                  ///< the scene's name for it
+  double height = 0.0;                 ///< above the floor, m
+  double smoothing_length = 0.0;       ///< of the sensor, m
   std::optional<double> air_pressure;  ///< around it, Pa; absent: eq. 11, the fluid alone
-  std::string reference;          ///< the experiment's name for it
+  std::string reference;               ///< the experiment's name for it
   PressureMeasures simulation;
   PressureMeasures experiment;  ///< of one test; its peak is peak_statistics' business
   PeakStatistics peak_statistics;
