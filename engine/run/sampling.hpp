@@ -17,7 +17,7 @@ class Sampler {
   virtual ~Sampler() = default;
   [[nodiscard]] virtual std::vector<Series::Column> columns() const = 0;
   /// Fills `values` (one per column) and returns the kernel weight that carried them: 0 is dry,
-  /// and no value.
+  /// and no value but the air's, where a scene names it.
   [[nodiscard]] virtual double sample(const Solver& solver, std::span<double> values) const = 0;
   /// A sampler that looks for an event ends at its first sample and stores no dry ones.
   [[nodiscard]] virtual bool is_event() const { return false; }

@@ -257,8 +257,9 @@ void describe_smoothing_length(Archive& a, Sensor& sensor) {
 template <class Archive>
 void describe_air_pressure(Archive& a, Sensor& sensor) {
   a.number("air_pressure", sensor.air_pressure,
-           {.about = "pressure of the air in what neither fluid nor wall fills around the sensor; "
-                     "the value is then the mean over fluid and air, which its face feels",
+           {.about = "pressure of the air in what neither fluid nor wall fills around the sensor, "
+                     "above that of a free surface, so mostly 0; the value is then the mean over "
+                     "fluid and air, which its face feels",
             .unit = "Pa",
             .range = from(-1e12, 1e12),
             .otherwise = "the mean over the fluid alone, eq. 11"});

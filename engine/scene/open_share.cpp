@@ -15,21 +15,34 @@ namespace {
 constexpr int kRings = 60;
 constexpr int kRays = 180;
 
-bool in_tank(const Tank& tank, const Vec& point) {
-  return point.x() > 0.0 && point.x() < tank.width && point.y() > 0.0 &&
-         (tank.open_top || point.y() < tank.height);
+/// Above the rim of an open tank all is open.
+bool in_wall(const Tank& tank, const Vec& point) {
+  if (point.y() >= tank.height) return !tank.open_top;
+  return point.x() <= 0.0 || point.x() >= tank.width || point.y() <= 0.0;
 }
 
-bool is_open(const Scene& scene, const Vec& point) {
-  return (!scene.tank || in_tank(*scene.tank, point)) &&
-         std::none_of(scene.obstacles.begin(), scene.obstacles.end(),
-                      [&](const Shape& solid) { return contains(solid, point); });
+/// The obstacles that come within `reach` of a point, by their bounds.
+std::vector<Shape> obstacles_near(const Scene& scene, const Vec& point, double reach) {
+  std::vector<Shape> near;
+  for (const Shape& solid : scene.obstacles) {
+    Box box = bounds(solid);
+    box.min.array() -= reach;
+    box.max.array() += reach;
+    if (box.contains(point)) near.push_back(solid);
+  }
+  return near;
 }
 
 }  // namespace
 
 OpenShare::OpenShare(const Scene& scene, const Vec& point, double h)
     : gate_(scene.method.lifted_wall) {
+  const std::vector<Shape> solids = obstacles_near(scene, point, scene.method.support_ratio() * h);
+  const auto is_open = [&](const Vec& place) {
+    return (!scene.tank || !in_wall(*scene.tank, place)) &&
+           std::none_of(solids.begin(), solids.end(),
+                        [&](const Shape& solid) { return contains(solid, place); });
+  };
   double whole = 0.0;
   for (int ring = 0; ring < kRings; ++ring) {
     const double r = scene.method.support_ratio() * (ring + 0.5) / kRings;
@@ -38,7 +51,7 @@ OpenShare::OpenShare(const Scene& scene, const Vec& point, double h)
       const double angle = 2.0 * std::numbers::pi * (ray + 0.5) / kRays;
       const Vec place = point + h * r * Vec(std::cos(angle), std::sin(angle));
       whole += weight;
-      if (!is_open(scene, place)) continue;
+      if (!is_open(place)) continue;
       if (gate_ && gate_->place.contains(place)) {
         held_.push_back({place, weight});
       } else {

@@ -7,8 +7,8 @@
 
 namespace sluice {
 
-/// How much of the kernel around a point is open to fluid and air: inside the tank, below its lid
-/// if it has one, and in no obstacle. A half on a wall, a quarter in a corner, 1 far from both.
+/// How much of the kernel around a point is open to fluid and air: inside the tank or above its
+/// rim, and in no obstacle. A half on a wall, a quarter in a corner, 1 far from both.
 class OpenShare {
  public:
   /// `h` is the smoothing length of the sum, m. The kernel's integral is taken over rings and

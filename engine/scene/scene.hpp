@@ -74,8 +74,8 @@ struct Sensor {
   Vec position = Vec::Zero();     ///< pressure, arrival: the point, m; surface_height and
                                   ///< column_height: x only; otherwise zero
   double smoothing_length = 0.0;  ///< pressure only, m; parsed default: the scene's h
-  /// Pressure only, Pa: of the air in what neither fluid nor wall fills around the point. Absent:
-  /// eq. 11, whose mean is over the fluid alone.
+  /// Pressure only, Pa above that of a free surface, which is 0: of the air in what neither fluid
+  /// nor wall fills around the point. Absent: eq. 11, whose mean is over the fluid alone.
   std::optional<double> air_pressure;
   double interval = 0.0;  ///< s; 0: every step
 };

@@ -14,8 +14,8 @@ constexpr std::size_t kBlock = 1024;      // particles or cells to a task
 constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
 
 // A large chunk has few neighbours in other chunks, all the fewer the more strips it spans; its
-// sums should stay in the second cache, and several threads need several chunks: of an odd number
-// one thread gets one more, which 11 of them made a tenth of the time of two threads.
+// sums should stay in the second cache, and several threads need several chunks: where their number
+// is odd one of two threads gets one more, a tenth of the time where they are 11.
 constexpr std::size_t kLeastChunks = 16;
 constexpr std::size_t kManyChunks = 64;  // where chunks may grow beyond kChunk
 constexpr std::size_t kLeastChunk = 32;  // clusters

@@ -98,7 +98,8 @@ void density_drift(const ParticleSpan& p, const Rates<T>& r, double dt) {
 }
 
 /// By how much a particle is shifted: not at a free surface, where neighbours lack and the gradient
-/// of the concentration is no sign of disorder. A flat surface's trace is 1.5.
+/// of the concentration is no sign of disorder. On a lattice cut by a flat surface the trace
+/// is 1.24 in the first row, 1.82 in the second and 2 from the third on (Wendland, h = 1.5 dx).
 constexpr double kSurfaceTrace = 1.75;
 constexpr double kInsideTrace = 1.9;
 

@@ -7,7 +7,7 @@
 namespace sluice {
 
 /// Raw samples of one sensor. `values` holds `columns.size()` numbers per sample, row by row; a dry
-/// sample is NaN with weight 0.
+/// sample is NaN, or the pressure of the air where a scene names it, with weight 0.
 struct Series {
   struct Column {
     std::string name;  ///< "value" where a sensor has one

@@ -74,6 +74,7 @@ TEST(OpenShare, AnOpenTankHasNoLid) {
   nlohmann::json scene = base_scene();
   scene["tank"]["open_top"] = true;
   EXPECT_NEAR(share(scene, {1.0, 1.0}, 0.05), 1.0, 1e-12);
+  EXPECT_NEAR(share(scene, {2.0, 1.0}, 0.05), 0.75, 1e-12) << "on the rim";
   scene["tank"]["open_top"] = false;
   EXPECT_NEAR(share(scene, {1.0, 1.0}, 0.05), 0.5, 1e-12);
 }
