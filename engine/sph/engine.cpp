@@ -55,6 +55,13 @@ double stress_across_wall(const Method& m) {
   return dx * dx * dx * sum;
 }
 
+/// What the sums over pairs leave out: the volume of a particle in h^2 times the constant of grad
+/// W.
+double scale_of_sums(const Method& m) {
+  const double ratio = m.spacing / m.smoothing_length;
+  return ratio * ratio * kernel_slope_scale(m.kernel);
+}
+
 /// Lengths in m.
 template <typename T>
 TermConstants<T> term_constants(const Method& m, double tile_size) {
@@ -474,10 +481,8 @@ Rates<T> Engine<T>::gather(const ParticleSpan& chunk, const SumBlocks& blocks) {
 /// What gather() left.
 template <typename T>
 Rates<T> Engine<T>::rates_of(const ParticleSpan& chunk, const SumBlocks& blocks) const {
-  // c/h, c^2/h times the volume of a particle in h^2 and the constant of grad W.
-  const double ratio = method.spacing / method.smoothing_length;
-  const double scale = ratio * ratio * kernel_slope_scale(method.kernel) * method.sound_speed /
-                       method.smoothing_length;
+  // Times c/h and c^2/h.
+  const double scale = scale_of_sums(method) * method.sound_speed / method.smoothing_length;
   return {sums_.of(chunk.begin / (kCluster * layout.chunk)),
           chunk.begin,
           blocks,
@@ -563,8 +568,7 @@ const SumBlocks& Engine<T>::density_sums() const {
 
 template <typename T>
 Shift Engine<T>::shift_of_step() const {
-  const double ratio = method.spacing / method.smoothing_length;
-  const double scale = ratio * ratio * kernel_slope_scale(method.kernel);
+  const double scale = scale_of_sums(method);
   return {method.shifting->coefficient * time_step * scale, scale, kMostShift * method.spacing,
           method.reference_density / (method.sound_speed * method.sound_speed) * method.gravity};
 }
@@ -625,12 +629,13 @@ void Engine<T>::step_kick_drift_kick() {
     });
   }));
   sum_pairs(sweeps_.density);
+  const Shift shift = method.shifting ? shift_of_step() : Shift{};
   advance_tracks(0.5 * time_step);
   keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
     const Rates<T> rates = gather(chunk, density_sums());
     for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.density_drift(p, rates, time_step);
-      if (method.shifting) sweeps_.updates.shift(p, rates, shift_of_step());
+      if (method.shifting) sweeps_.updates.shift(p, rates, shift);
       sweeps_.updates.write_places(p, scales_, pairs_);
       sweeps_.updates.write_densities(p, scales_, pairs_);
       compare_with_tracks(p, seen);

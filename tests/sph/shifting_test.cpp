@@ -26,18 +26,6 @@ Method shifting_method(KernelKind kernel, Precision precision) {
   return m;
 }
 
-/// Where a step without shifting finds the particles when it sums eq. 4: half a kick and half a
-/// drift from `fluid`, whose accelerations `solver` holds.
-Fluid at_the_middle_of_the_step(Fluid fluid, const Solver& solver, double dt) {
-  const auto ax = by_id(solver.state(), &Particles::ax);
-  const auto ay = by_id(solver.state(), &Particles::ay);
-  for (std::size_t i = 0; i < fluid.size(); ++i) {
-    fluid.v[i] += 0.5 * dt * Vec(ax[i], ay[i]);
-    fluid.x[i] += 0.5 * dt * fluid.v[i];
-  }
-  return fluid;
-}
-
 /// The way of each particle: 2 h |v| dt sum V slope x_ij, as far as the trace of sum V slope x_ij
 /// x_ij is above 1.75, in full from 1.9 on, and no more than dx/10.
 std::vector<Vec> plain_shift(const Method& m, const Fluid& fluid, const std::vector<Vec>& walls,
@@ -93,8 +81,7 @@ void expect_shift(const Method& m, const FluidAndWalls& scene, const std::string
   plain.step();
   const double dt = solver.time_step();
   ASSERT_EQ(dt, plain.time_step());
-  const Fluid middle =
-      at_the_middle_of_the_step(scene.fluid, Solver(m, start, scene.walls, {1, target}), dt);
+  const Fluid middle = middle_of_step(scene.fluid, start, dt);
   const std::vector<Vec> expected = plain_shift(m, middle, scene.walls, pressure, dt);
 
   const Fluid shifted = fluid_of(solver.state());

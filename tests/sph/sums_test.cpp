@@ -96,19 +96,16 @@ void expect_kick_drift_kick_sums(const Method& m, const Scene& scene, const std:
   const double eps = tolerance(m.precision);
   Solver solver(m, start_from(scene.fluid), scene.walls, {1, target});
   expect_near(solver.wall_pressures(), pressure, eps * 2e4, what + ": wall pressure");
-  const auto ax = by_id(solver.state(), &Particles::ax);
-  const auto ay = by_id(solver.state(), &Particles::ay);
+  const SolverState start = solver.state();
+  const auto ax = by_id(start, &Particles::ax);
+  const auto ay = by_id(start, &Particles::ay);
   std::vector<Vec> a;
   for (std::size_t i = 0; i < ax.size(); ++i) a.emplace_back(ax[i], ay[i]);
   expect_near(a, expected.acceleration, eps * expected.acceleration_size, what + ": acceleration");
 
   solver.step();
   const double dt = solver.time_step();
-  Fluid middle = scene.fluid;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    middle.v[i] += 0.5 * dt * a[i];
-    middle.x[i] += 0.5 * dt * middle.v[i];
-  }
+  const Fluid middle = middle_of_step(scene.fluid, start, dt);
   const PlainRates later = plain_rates(m, middle, scene.walls, pressure);
   expect_near(rate_between(scene.fluid.excess, fluid_of(solver.state()).excess, dt), later.density,
               eps * later.density_size, what + ": density rate");

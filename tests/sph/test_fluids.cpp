@@ -90,6 +90,16 @@ Fluid fluid_of(const SolverState& state) {
   return fluid;
 }
 
+Fluid middle_of_step(Fluid fluid, const SolverState& start, double dt) {
+  const auto ax = by_id(start, &Particles::ax);
+  const auto ay = by_id(start, &Particles::ay);
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    fluid.v[i] += 0.5 * dt * Vec(ax[i], ay[i]);
+    fluid.x[i] += 0.5 * dt * fluid.v[i];
+  }
+  return fluid;
+}
+
 void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what) {
   for (const Field& field : kFields) {
     const auto& one = a.particles.*field.member;

@@ -72,6 +72,10 @@ class Dice {
 [[nodiscard]] std::vector<double> by_id(const SolverState& state,
                                         std::vector<double> Particles::*field);
 
+/// Where kick-drift-kick sums eq. 4 in a step of length dt from `fluid`: half a kick by the
+/// accelerations of `start`, the state of a solver that holds it, and half a drift later.
+[[nodiscard]] Fluid middle_of_step(Fluid fluid, const SolverState& start, double dt);
+
 /// Fails the test unless both states hold the same bits.
 void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what);
 
