@@ -110,16 +110,23 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V first, V second) {
   }
 }
 
+/// For places of which all blocks are one vector: `even` and `odd` hold, in two blocks each, what
+/// is to be added up for the blocks 0 and 2, and for 1 and 3.
+template <typename T, class V>
+HWY_INLINE void subtract_halves(T* HWY_RESTRICT to, V even, V odd) {
+  const typename Blocks<T>::D d;
+  const V sums =
+      hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
+  hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+}
+
 template <typename T, class V>
 HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x) {
   const typename Blocks<T>::D d;
   if constexpr (Blocks<T>::lanes == kRateSums.stride) {
-    // All blocks of the place are one vector; the last is not read.
+    // The last block is not read.
     const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
-    const V odd = y + hn::ConcatLowerUpper(d, y, y);
-    const V sums =
-        hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
-    hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+    subtract_halves(to, even, V(y + hn::ConcatLowerUpper(d, y, y)));
   } else {
     subtract_from_j(to + kRateSums.density, density);
     subtract_from_j(to + kRateSums.y, y);
@@ -134,9 +141,7 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x, V trace
   if constexpr (Blocks<T>::lanes == blocks.stride) {
     const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
     const V odd = hn::ConcatLowerLower(d, trace, y) + hn::ConcatUpperUpper(d, trace, y);
-    const V sums =
-        hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
-    hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+    subtract_halves(to, even, odd);
   } else {
     subtract_from_j(to + blocks.density, density);
     subtract_from_j(to + blocks.y, y);
