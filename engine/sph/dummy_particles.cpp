@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace sluice {
 
@@ -20,7 +21,9 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
     y[i] = places[i].y();
     id[i] = static_cast<double>(i);
   }
-  layout_ = sort_into_clusters(team, grid, x, y, id, all);
+  Order order = sort_into_clusters(team, grid, x, y, id, all);
+  layout_ = std::move(order.layout);
+  source_ = std::move(order.source);
   const std::size_t slots = layout_.slots();
   arrays_.resize(slots);
   excess_.resize(slots);
@@ -28,8 +31,8 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
   std::vector<double> slot_y(slots, 0.0);
   std::vector<double> slot_id(slots, -1.0);
   for (std::size_t s = 0; s < slots; ++s) {
-    const std::uint32_t i = layout_.source[s];
-    if (i == Layout::kEmpty) continue;
+    const std::uint32_t i = source_[s];
+    if (i == Order::kEmpty) continue;
     slot_x[s] = x[i];
     slot_y[s] = y[i];
     slot_id[s] = id[i];
@@ -93,8 +96,8 @@ std::vector<double> DummyParticles<T>::pressures(const Method& method) const {
   std::vector<double> result(count_, 0.0);
   const double scale = method.reference_density * method.sound_speed * method.sound_speed;
   for (std::size_t s = 0; s < layout_.slots(); ++s) {
-    if (layout_.source[s] == Layout::kEmpty) continue;
-    result[layout_.source[s]] = static_cast<double>(arrays_.excess[s]) * scale;
+    if (source_[s] == Order::kEmpty) continue;
+    result[source_[s]] = static_cast<double>(arrays_.excess[s]) * scale;
   }
   return result;
 }

@@ -51,6 +51,7 @@ class DummyParticles {
 
   std::size_t count_;
   Layout layout_;
+  std::vector<std::uint32_t> source_;  // of the layout
   ClusterBounds bounds_;
   PairArrays<T> arrays_;
   AlignedArray<T> excess_;              // sums of eq. 9

@@ -24,7 +24,7 @@ constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 
-constexpr double kMostShift = 0.1;  // dx in a step
+constexpr double kMostShift = 0.1;  // dx at a time
 
 /// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source, which
 /// lifts still water for ever. Only where the hydrostatic part is diffused as well must the walls
@@ -126,7 +126,7 @@ class Engine final : public Solver::Impl {
   // Order in memory.
   void sort();
   void retire(const std::vector<std::uint32_t>& slots);
-  void reorder(const Layout& next);
+  void reorder(Order order);
   void bind();
   void make_lists();
   void count_neighbours();
@@ -149,8 +149,8 @@ class Engine final : public Solver::Impl {
   void note_motion(const Motion& seen);
   [[nodiscard]] bool places_are_finite() const;
   void choose_time_step();
-  [[nodiscard]] const SumBlocks& density_sums() const;
   [[nodiscard]] Shift shift_of_step() const;
+  [[nodiscard]] bool shifting_due() const;
   [[nodiscard]] bool reinitialisation_due(std::uint64_t step) const;
 
   // Views.
@@ -373,7 +373,8 @@ void Engine<T>::retire(const std::vector<std::uint32_t>& slots) {
 }
 
 template <typename T>
-void Engine<T>::reorder(const Layout& next) {
+void Engine<T>::reorder(Order order) {
+  const Layout& next = order.layout;
   for (const Field& field : kFields) {
     if (!carries(method.integrator, field)) continue;
     std::vector<double>& values = particles.*field.member;
@@ -385,12 +386,12 @@ void Engine<T>::reorder(const Layout& next) {
       const std::size_t end = kCluster * next.chunk_begin(chunk + 1);
       for (std::size_t s = kCluster * next.chunk_begin(chunk); s < end; ++s) {
         moved[s] =
-            next.source[s] != Layout::kEmpty ? values[next.source[s]] : empty + scale * nowhere(s);
+            order.source[s] != Order::kEmpty ? values[order.source[s]] : empty + scale * nowhere(s);
       }
     });
     values = std::move(moved);
   }
-  layout = next;
+  layout = std::move(order.layout);
 }
 
 /// Everything that follows from the order: tiles, pair arrays and lists.
@@ -434,9 +435,9 @@ void Engine<T>::make_lists() {
     build_pair_list(team_, sweeps_, range, wall, fluid, wall_to_fluid_);
   }
   sums_.place(fluid_to_fluid_, layout.chunk,
-              method.integrator == Integrator::modified_leap_frog
-                  ? kRateSums.stride
-                  : std::max(density_sums().stride, kAccelerationSums.stride));
+              method.integrator == Integrator::modified_leap_frog ? kRateSums.stride
+              : method.shifting                                   ? kDensityAndShiftingSums.stride
+                                                                  : kAccelerationSums.stride);
 }
 
 template <typename T>
@@ -562,14 +563,15 @@ void Engine<T>::choose_time_step() {
 }
 
 template <typename T>
-const SumBlocks& Engine<T>::density_sums() const {
-  return method.shifting ? kDensityAndShiftingSums : kDensitySums;
+bool Engine<T>::shifting_due() const {
+  return method.shifting && step_count % ParticleShifting::kInterval == 0;
 }
 
 template <typename T>
 Shift Engine<T>::shift_of_step() const {
   const double scale = scale_of_sums(method);
-  return {method.shifting->coefficient * time_step * scale, scale, kMostShift * method.spacing,
+  const double duration = static_cast<double>(ParticleShifting::kInterval) * time_step;
+  return {method.shifting->coefficient * duration * scale, scale, kMostShift * method.spacing,
           method.reference_density / (method.sound_speed * method.sound_speed) * method.gravity};
 }
 
@@ -628,14 +630,15 @@ void Engine<T>::step_kick_drift_kick() {
       compare_with_tracks(p, seen);
     });
   }));
-  sum_pairs(sweeps_.density);
-  const Shift shift = method.shifting ? shift_of_step() : Shift{};
+  const bool shifting = shifting_due();
+  sum_pairs(shifting ? sweeps_.density_and_shift : sweeps_.density);
+  const Shift shift = shifting ? shift_of_step() : Shift{};
   advance_tracks(0.5 * time_step);
   keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
-    const Rates<T> rates = gather(chunk, density_sums());
+    const Rates<T> rates = gather(chunk, shifting ? kDensityAndShiftingSums : kDensitySums);
     for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.density_drift(p, rates, time_step);
-      if (method.shifting) sweeps_.updates.shift(p, rates, shift);
+      if (shifting) sweeps_.updates.shift(p, rates, shift);
       sweeps_.updates.write_places(p, scales_, pairs_);
       sweeps_.updates.write_densities(p, scales_, pairs_);
       compare_with_tracks(p, seen);
@@ -687,7 +690,7 @@ std::size_t Engine<T>::memory_bytes() const {
   std::size_t bytes = pairs_.bytes() + walls_.bytes() + tracks_.bytes() + sums_.bytes() +
                       fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
-  return bytes + layout.source.capacity() * sizeof(std::uint32_t);
+  return bytes;
 }
 
 }  // namespace

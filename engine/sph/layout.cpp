@@ -68,9 +68,9 @@ Vec Grid::tile_center(Tile tile) const {
   return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
 }
 
-Layout sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const double> x,
-                          std::span<const double> y, std::span<const double> id,
-                          std::span<const std::uint32_t> use) {
+Order sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const double> x,
+                         std::span<const double> y, std::span<const double> id,
+                         std::span<const std::uint32_t> use) {
   // Counting sort by cell, then insertion sort by x inside it: linear.
   std::vector<std::uint32_t> cell(use.size());
   team.run((use.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
@@ -84,9 +84,9 @@ Layout sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const do
   for (const std::uint32_t c : cell) ++first[c + 1];
   for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
 
-  std::vector<std::uint32_t> order(use.size());
+  std::vector<std::uint32_t> sorted(use.size());
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::size_t k = 0; k < use.size(); ++k) order[next[cell[k]]++] = use[k];
+  for (std::size_t k = 0; k < use.size(); ++k) sorted[next[cell[k]]++] = use[k];
 
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     if (x[a] != x[b]) return x[a] < x[b];
@@ -96,37 +96,40 @@ Layout sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const do
   team.run((cells + kBlock - 1) / kBlock, [&](std::size_t block) {
     for (std::size_t c = kBlock * block; c < std::min(cells, kBlock * (block + 1)); ++c) {
       for (std::uint32_t k = first[c] + 1; k < first[c + 1]; ++k) {
-        const std::uint32_t p = order[k];
+        const std::uint32_t p = sorted[k];
         std::uint32_t place = k;
-        for (; place > first[c] && before(p, order[place - 1]); --place) {
-          order[place] = order[place - 1];
+        for (; place > first[c] && before(p, sorted[place - 1]); --place) {
+          sorted[place] = sorted[place - 1];
         }
-        order[place] = p;
+        sorted[place] = p;
       }
     }
   });
 
-  Layout layout;
-  layout.source.reserve(use.size() + use.size() / 8 + kCluster * (grid.strips() + kWholeVectors));
+  Order order;
+  Layout& layout = order.layout;
+  std::vector<std::uint32_t>& source = order.source;
+  source.reserve(use.size() + use.size() / 8 + kCluster * (grid.strips() + kWholeVectors));
   layout.strip_begin.reserve(grid.strips() + 1);
   const auto fill_cluster = [&](std::size_t multiple) {
-    while (layout.source.size() % multiple != 0) layout.source.push_back(Layout::kEmpty);
+    while (source.size() % multiple != 0) source.push_back(Order::kEmpty);
   };
   for (std::size_t strip = 0; strip < grid.strips(); ++strip) {
-    layout.strip_begin.push_back(static_cast<std::uint32_t>(layout.source.size() / kCluster));
+    layout.strip_begin.push_back(static_cast<std::uint32_t>(source.size() / kCluster));
     double cluster_start = 0.0;
     for (std::size_t k = first[strip * grid.bins()]; k < first[(strip + 1) * grid.bins()]; ++k) {
-      const std::uint32_t p = order[k];
+      const std::uint32_t p = sorted[k];
       if (x[p] - cluster_start > grid.max_cluster_length()) fill_cluster(kCluster);
-      if (layout.source.size() % kCluster == 0) cluster_start = x[p];
-      layout.source.push_back(p);
+      if (source.size() % kCluster == 0) cluster_start = x[p];
+      source.push_back(p);
     }
     fill_cluster(kCluster);
   }
-  layout.strip_begin.push_back(static_cast<std::uint32_t>(layout.source.size() / kCluster));
+  layout.strip_begin.push_back(static_cast<std::uint32_t>(source.size() / kCluster));
   fill_cluster(kCluster * kWholeVectors);
+  layout.slot_count = source.size();
   layout.chunk = chunk_of(layout.clusters());
-  return layout;
+  return order;
 }
 
 }  // namespace sluice

@@ -61,25 +61,31 @@ class Grid {
 /// Where particles go in memory: strip by strip, by x inside a strip, four to a cluster. A strip
 /// starts a new cluster and so does a gap; slots left over are empty.
 struct Layout {
-  static constexpr std::uint32_t kEmpty = std::numeric_limits<std::uint32_t>::max();
-
-  std::vector<std::uint32_t> source;       ///< per slot: index of the particle, or kEmpty
   std::vector<std::uint32_t> strip_begin;  ///< first cluster of each strip, and the end
-  std::size_t chunk = 1;                   ///< clusters per chunk, the unit of work of a thread
+  std::size_t slot_count = 0;
+  std::size_t chunk = 1;  ///< clusters per chunk, the unit of work of a thread
 
-  [[nodiscard]] std::size_t slots() const { return source.size(); }
-  [[nodiscard]] std::size_t clusters() const { return source.size() / kCluster; }
+  [[nodiscard]] std::size_t slots() const { return slot_count; }
+  [[nodiscard]] std::size_t clusters() const { return slot_count / kCluster; }
   [[nodiscard]] std::size_t chunks() const { return (clusters() + chunk - 1) / chunk; }
   [[nodiscard]] std::size_t chunk_begin(std::size_t n) const {
     return std::min(n * chunk, clusters());
   }
 };
 
+/// A layout, and who goes where in it.
+struct Order {
+  static constexpr std::uint32_t kEmpty = std::numeric_limits<std::uint32_t>::max();
+
+  Layout layout;
+  std::vector<std::uint32_t> source;  ///< per slot: index of the particle, or kEmpty
+};
+
 /// Orders the particles by (strip, x, y, id). The order of the input changes nothing. `use` holds
 /// the particles to place.
-[[nodiscard]] Layout sort_into_clusters(ThreadTeam& team, const Grid& grid,
-                                        std::span<const double> x, std::span<const double> y,
-                                        std::span<const double> id,
-                                        std::span<const std::uint32_t> use);
+[[nodiscard]] Order sort_into_clusters(ThreadTeam& team, const Grid& grid,
+                                       std::span<const double> x, std::span<const double> y,
+                                       std::span<const double> id,
+                                       std::span<const std::uint32_t> use);
 
 }  // namespace sluice

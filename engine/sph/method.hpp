@@ -67,6 +67,9 @@ struct WallDrag {
 /// gaps open along streamlines. One at a free surface stays.
 struct ParticleShifting {
   double coefficient = 2.0;  ///< A, dimensionless
+
+  /// Particles are shifted in every so many steps, for the dt of all: gaps open slowly.
+  static constexpr std::uint64_t kInterval = 2;
 };
 
 /// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,

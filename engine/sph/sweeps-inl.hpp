@@ -257,18 +257,18 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       const V volume_j = g * load_j(other.volume + j);
       i.density_sum = hn::MulAdd(volume_j, summand, i.density_sum);
       if constexpr (Terms::shifting) {
-        i.x_sum = i.x_sum + ShiftingTerm::x(pair, volume_j);
-        i.y_sum = i.y_sum + ShiftingTerm::y(pair, volume_j);
-        i.trace_sum = i.trace_sum + ShiftingTerm::trace(pair, volume_j);
+        i.x_sum = hn::MulAdd(volume_j, ShiftingTerm::x(pair), i.x_sum);
+        i.y_sum = hn::MulAdd(volume_j, ShiftingTerm::y(pair), i.y_sum);
+        i.trace_sum = hn::MulAdd(volume_j, ShiftingTerm::trace(pair), i.trace_sum);
       }
       if constexpr (kShare == Share::both) {
         const V density = hn::Set(d, T{1}) + load_j(other.excess + j);
         const V volume_i = g * i.volume;
         density_j = volume_i * Continuity::add_for_j(exchange, pair, density);
         if constexpr (Terms::shifting) {
-          x_j = ShiftingTerm::x(pair, volume_i);
-          y_j = ShiftingTerm::y(pair, volume_i);
-          trace_j = hn::Neg(ShiftingTerm::trace(pair, volume_i));
+          x_j = volume_i * ShiftingTerm::x(pair);
+          y_j = volume_i * ShiftingTerm::y(pair);
+          trace_j = hn::Neg(volume_i * ShiftingTerm::trace(pair));
         }
       }
     }
@@ -498,7 +498,7 @@ std::size_t prune_list(const PruneTask<T>& task) {
   return kept;
 }
 
-template <class Shape, Sums kSums, typename T>
+template <class Shape, Sums kSums, typename T, bool kShifting = false>
 typename Sweeps<T>::Sweep select_rates(const Method& m) {
   using enum Viscosity;
   const auto with = [&]<bool kDiffusion, Viscosity kViscosity>() -> typename Sweeps<T>::Sweep {
@@ -520,12 +520,8 @@ typename Sweeps<T>::Sweep select_rates(const Method& m) {
   };
   // What a sweep does not sum is not a choice: the same loop serves both, and is compiled once.
   if constexpr (kSums == Sums::density) {
-    const auto with_shifting = [&]<bool kShifting>() -> typename Sweeps<T>::Sweep {
-      return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, none, Drag::none, kShifting>, T>
-                         : &sum_rates<Shape, Terms<kSums, false, none, Drag::none, kShifting>, T>;
-    };
-    return m.shifting ? with_shifting.template operator()<true>()
-                      : with_shifting.template operator()<false>();
+    return m.diffusion ? &sum_rates<Shape, Terms<kSums, true, none, Drag::none, kShifting>, T>
+                       : &sum_rates<Shape, Terms<kSums, false, none, Drag::none, kShifting>, T>;
   } else if constexpr (kSums == Sums::acceleration) {
     return with_viscosity.template operator()<false>();
   } else {
@@ -540,6 +536,7 @@ void fill_sweeps(const Method& method, Sweeps<T>& out) {
     out.density_and_acceleration = select_rates<Shape, Sums::both, T>(method);
   } else {
     out.density = select_rates<Shape, Sums::density, T>(method);
+    out.density_and_shift = select_rates<Shape, Sums::density, T, true>(method);
     out.acceleration = select_rates<Shape, Sums::acceleration, T>(method);
   }
   out.wall_pressure = &sum_wall_pressure<Shape, T>;

@@ -59,6 +59,7 @@ struct Sweeps {
 
   Sweep density_and_acceleration = nullptr;  ///< eqs. 4, 5, 7, 8 in one sweep
   Sweep density = nullptr;                   ///< eqs. 4, 7
+  Sweep density_and_shift = nullptr;         ///< eqs. 4, 7, and the sums of particle shifting
   Sweep acceleration = nullptr;              ///< eqs. 5, 8, viscous stress
   Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
   Sweep reinitialise = nullptr;              ///< eq. 10

@@ -59,19 +59,19 @@ struct DensityDiffusionTerm {
 
 /// Particle shifting (ParticleShifting of method.hpp): -h grad C = sum_j V_j g X_ij, and the trace
 /// of the matrix sum_j V_j g X_ij X_ij, 2 inside the fluid and less where neighbours lack. A
-/// summand before g; x and y change their sign for particle j, the trace does not.
+/// summand before V_j g; x and y change their sign for particle j, the trace does not.
 struct ShiftingTerm {
   template <class V>
-  static HWY_INLINE V x(const PairGeometry<V>& pair, V volume) {
-    return volume * pair.dx;
+  static HWY_INLINE V x(const PairGeometry<V>& pair) {
+    return pair.dx;
   }
   template <class V>
-  static HWY_INLINE V y(const PairGeometry<V>& pair, V volume) {
-    return volume * pair.dy;
+  static HWY_INLINE V y(const PairGeometry<V>& pair) {
+    return pair.dy;
   }
   template <class V>
-  static HWY_INLINE V trace(const PairGeometry<V>& pair, V volume) {
-    return volume * pair.r_sq;
+  static HWY_INLINE V trace(const PairGeometry<V>& pair) {
+    return pair.r_sq;
   }
 };
 

@@ -42,9 +42,9 @@ struct Rates {
   Vec gravity = Vec::Zero();        ///< m/s^2
 };
 
-/// Particle shifting over one step.
+/// One shift of the particles.
 struct Shift {
-  double per_speed = 0.0;         ///< A dt times the scale of the sums, s
+  double per_speed = 0.0;         ///< A, its duration and the scale of the sums, s
   double trace_scale = 0.0;       ///< out of the sums into the trace
   double most = 0.0;              ///< no particle is shifted farther, m
   Vec hydrostatic = Vec::Zero();  ///< rho_0 f/c^2, kg/m^4: goes with the place

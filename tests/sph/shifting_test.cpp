@@ -82,7 +82,7 @@ void expect_shift(const Method& m, const FluidAndWalls& scene, const std::string
   const double dt = solver.time_step();
   ASSERT_EQ(dt, plain.time_step());
   const Fluid middle = middle_of_step(scene.fluid, start, dt);
-  const std::vector<Vec> expected = plain_shift(m, middle, scene.walls, pressure, dt);
+  const std::vector<Vec> expected = plain_shift(m, middle, scene.walls, pressure, 2.0 * dt);
 
   const Fluid shifted = fluid_of(solver.state());
   const Fluid still = fluid_of(plain.state());
@@ -114,6 +114,20 @@ TEST(ParticleShifting, IsThatOfThePlainDoubleLoop) {
         expect_shift(shifting_method(kernel, precision), block, target);
       }
     }
+  }
+}
+
+TEST(ParticleShifting, TakesPlaceInEverySecondStep) {
+  const FluidAndWalls tank = restless_tank();
+  Method m = shifting_method(KernelKind::wendland_c2, Precision::mixed);
+  Solver solver(m, start_from(tank.fluid), tank.walls, {});
+  m.shifting.reset();
+  for (int n = 0; n < 4; ++n) {
+    Solver plain(m, solver.state(), tank.walls, {});
+    solver.step();
+    plain.step();
+    const bool shifted = fluid_of(solver.state()).x != fluid_of(plain.state()).x;
+    EXPECT_EQ(shifted, n % 2 == 0) << "step " << n;
   }
 }
 
