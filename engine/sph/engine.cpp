@@ -400,8 +400,8 @@ void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
   bounds.assign_tiles(team_, grid_, layout, particles.x_sorted.data(), particles.y_sorted.data(),
                       particles.id.data());
-  origin_x_.resize(layout.clusters());
-  origin_y_.resize(layout.clusters());
+  resize_closely(origin_x_, layout.clusters());
+  resize_closely(origin_y_, layout.clusters());
   scales_ = scales();
   pairs_.resize(slots);
   if (keeps_diffused(method)) pairs_.diffused.resize(slots);
@@ -690,7 +690,7 @@ std::size_t Engine<T>::memory_bytes() const {
   std::size_t bytes = pairs_.bytes() + walls_.bytes() + tracks_.bytes() + sums_.bytes() +
                       fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
-  return bytes;
+  return bytes + bounds.bytes() + (origin_x_.capacity() + origin_y_.capacity()) * sizeof(double);
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ void assign_places(std::size_t first, std::size_t count, std::size_t clusters,
   // Of every cluster; all kNone between calls, so that only the guests are reset.
   thread_local std::vector<std::uint32_t> place;
   if (place.size() < clusters) place.assign(clusters, kNone);
-  chunk.targets.resize(chunk.entries.size());
+  resize_closely(chunk.targets, chunk.entries.size());
   chunk.guests.clear();
   for (std::size_t e = 0; e < chunk.entries.size(); ++e) {
     const std::uint32_t j = chunk.entries[e] & PairList::kClusterMask;
@@ -130,7 +130,7 @@ struct Extent {
 void ClusterBounds::assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout,
                                  const double* x, const double* y, const double* id) {
   const std::size_t clusters = layout.clusters();
-  tile.resize(clusters);
+  resize_closely(tile, clusters);
   team.run(layout.chunks(), [&](std::size_t chunk) {
     for (std::size_t c = layout.chunk_begin(chunk); c < layout.chunk_begin(chunk + 1); ++c) {
       const std::size_t first = kCluster * c;
@@ -143,7 +143,7 @@ void ClusterBounds::assign_boxes(ThreadTeam& team, const Layout& layout, const M
                                  const Leeway<double>& leeway, const Places& places) {
   const std::size_t clusters = layout.clusters();
   for (auto* a : {&x_min, &x_max, &y_min, &y_max, &x_max_before, &x_min_after}) {
-    a->resize(clusters);
+    resize_closely(*a, clusters);
   }
   const std::size_t strips = layout.strip_begin.size() - 1;
   strip_y_min.assign(strips, kHuge);
@@ -223,7 +223,7 @@ void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<
         search.start(bounds.strip_y_min[s], bounds.strip_y_max[s], mutual ? s : 0);
       }
       const std::size_t found = search.collect(bounds, c, mutual ? c : 0, candidates);
-      chunk.entries.resize(chunk.begin[n] + found);
+      resize_closely(chunk.entries, chunk.begin[n] + found);
       const std::size_t kept =
           sweeps.prune({self.tracks, other.tracks, range.leeway, range.cut_off, range.tile_size, c,
                         candidates.data(), found, chunk.entries.data() + chunk.begin[n]});

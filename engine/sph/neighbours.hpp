@@ -39,6 +39,15 @@ struct ClusterBounds {
 
   /// No strip before this one reaches up to y.
   [[nodiscard]] std::size_t first_strip(float y) const;
+
+  /// Of what there is per cluster.
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = tile.capacity() * sizeof(Grid::Tile);
+    for (const auto* a : {&x_min, &x_max, &y_min, &y_max, &x_max_before, &x_min_after}) {
+      sum += a->capacity() * sizeof(float);
+    }
+    return sum;
+  }
 };
 
 /// A set of particles as the search sees it.

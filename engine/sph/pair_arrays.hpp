@@ -37,6 +37,13 @@ class AlignedArray {
   std::size_t capacity_ = 0;
 };
 
+/// Resizes a vector with little to spare; left to itself it grows to twice its size.
+template <typename Vector>
+void resize_closely(Vector& values, std::size_t size) {
+  if (values.capacity() < size) values.reserve(size + size / 32);
+  values.resize(size);
+}
+
 /// Read access to PairArrays.
 template <typename T>
 struct PairView {
