@@ -26,8 +26,8 @@ struct Leeway {
 
 /// How long pair lists serve changes no bit of a result, for what is beyond the support adds zero.
 /// Longer lists serve longer and hold more pairs that are none: a particle may be off its track by
-/// this much and a twentieth of its way along it. Twice that would spare a sixth of the lists and
-/// sum 3 % more pairs.
+/// this much and a twentieth of its way along it. Twice that would spare a twelfth of the lists
+/// and sum 3 % more pairs (tests/bench/README.md).
 template <typename T>
 inline constexpr Leeway<T> kLeeway{T{15}, static_cast<T>(0.05), static_cast<T>(0.05 * 15.0)};
 
