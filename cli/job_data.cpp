@@ -31,7 +31,7 @@ std::vector<Series> JobData::series() const {
   if (std::filesystem::exists(paths_.series())) return read_series(paths_.series());
   for (const std::filesystem::path& path : paths_.checkpoints()) {
     try {
-      return read_checkpoint(path).series;
+      return split(read_checkpoint(path).samples);
     } catch (const StorageError&) {
       continue;  // Putting it aside is for the run, which holds the lock.
     }

@@ -99,9 +99,9 @@ void JobWriter::write_due_frame(Simulation& simulation) {
 
 void JobWriter::refresh_series(const Simulation& simulation) {
   const double start = clock_.seconds();
-  if (simulation.series().empty() || start < next_series_) return;
+  if (simulation.samples().empty() || start < next_series_) return;
   try {
-    write_series(folder_->paths().series(), simulation.series());
+    write_series(folder_->paths().series(), simulation.samples());
   } catch (const StorageError& error) {
     warn("series.h5", error, 10.0);
     next_series_ = start + 10.0;
@@ -113,10 +113,10 @@ void JobWriter::refresh_series(const Simulation& simulation) {
 }
 
 void JobWriter::finish_series(const Simulation& simulation) {
-  if (simulation.series().empty()) return;
+  if (simulation.samples().empty()) return;
   const double start = clock_.seconds();
   persist("series.h5", [&] {
-    write_series(folder_->paths().series(), simulation.series(), Durability::power_cut);
+    write_series(folder_->paths().series(), simulation.samples(), Durability::power_cut);
   });
   output_seconds_ += clock_.seconds() - start;
 }

@@ -105,7 +105,7 @@ Outcome describe_simulation(const Simulation& simulation) {
   outcome.overtopped = simulation.overtopped();
   outcome.extremes = simulation.baselines();
   outcome.reference_density = simulation.scene().method.reference_density;
-  for (const Series& series : simulation.series()) {
+  for (const Series& series : split(simulation.samples())) {
     outcome.series_digests.emplace_back(series.name, series_digest(series));
   }
   outcome.account.particle_steps = simulation.particle_steps();

@@ -105,6 +105,8 @@ class SurgeFrontSampler final : public Sampler {
 /// Kinetic, potential and internal energy of the fluid, J per metre of depth.
 class EnergySampler final : public Sampler {
  public:
+  /// The energy is summed on all threads already.
+  bool shares_a_table() const override { return false; }
   std::vector<Series::Column> columns() const override {
     return {{"kinetic", "J/m"}, {"potential", "J/m"}, {"internal", "J/m"}};
   }
@@ -125,6 +127,7 @@ class ArrivalSampler final : public Sampler {
       : position_(position), reach_(1.5 * spacing) {}
   std::vector<Series::Column> columns() const override { return {{"value", "s"}}; }
   bool is_event() const override { return true; }
+  bool shares_a_table() const override { return false; }
   double sample(const Solver& solver, std::span<double> values) const override {
     const bool arrived = solver.distance_to_fluid(position_) <= reach_;
     values[0] = arrived ? solver.time() : kDry;
@@ -136,11 +139,30 @@ class ArrivalSampler final : public Sampler {
   double reach_;
 };
 
-void append(Series& series, double time, std::span<const double> values, double weight) {
-  series.duration.push_back(series.time.empty() ? 0.0 : time - series.time.back());
-  series.time.push_back(time);
-  series.values.insert(series.values.end(), values.begin(), values.end());
-  series.weight.push_back(weight);
+/// Sensors that a thread asks at once: some microseconds of work.
+constexpr std::size_t kTask = 16;
+
+/// One row of the table: what its sensors measure now. False when it holds nothing to keep.
+bool append(SampleTable& table, const Solver& solver,
+            const std::vector<std::unique_ptr<Sampler>>& samplers) {
+  const std::size_t columns = table.columns.size();
+  const std::size_t old_values = table.values.size();
+  const std::size_t old_weights = table.weight.size();
+  table.values.resize(old_values + table.width(), kDry);
+  table.weight.resize(old_weights + table.sensors());
+  solver.for_each((samplers.size() + kTask - 1) / kTask, [&](std::size_t task) {
+    const std::size_t end = std::min(kTask * (task + 1), samplers.size());
+    for (std::size_t i = kTask * task; i < end; ++i) {
+      double* values = table.values.data() + old_values + i * columns;
+      table.weight[old_weights + i] = samplers[i]->sample(solver, {values, columns});
+    }
+  });
+  if (samplers.front()->is_event() && table.weight.back() == 0.0) {
+    table.values.resize(old_values);
+    table.weight.resize(old_weights);
+    return false;
+  }
+  return true;
 }
 
 std::string_view kind_name(SensorKind kind) {
@@ -182,34 +204,40 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene) 
   throw std::logic_error("unknown sensor kind");
 }
 
-SensorArray::SensorArray(const Scene& scene) : sensors_(scene.sensors) {
-  for (const Sensor& sensor : sensors_) samplers_.push_back(make_sampler(sensor, scene));
-}
-
-std::vector<Series> SensorArray::empty_series() const {
-  std::vector<Series> all;
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    Series series;
-    series.name = sensors_[i].name;
-    series.kind = kind_name(sensors_[i].kind);
-    series.columns = samplers_[i]->columns();
-    all.push_back(std::move(series));
+SensorArray::SensorArray(const Scene& scene) {
+  for (std::size_t place = 0; place < scene.sensors.size(); ++place) {
+    const Sensor& sensor = scene.sensors[place];
+    std::unique_ptr<Sampler> sampler = make_sampler(sensor, scene);
+    Group& group = group_for(sensor, *sampler);
+    SampleTable& table = empty_[static_cast<std::size_t>(&group - groups_.data())];
+    table.kind = kind_name(sensor.kind);
+    table.columns = sampler->columns();
+    table.names.push_back(sensor.name);
+    table.places.push_back(place);
+    group.samplers.push_back(std::move(sampler));
   }
-  return all;
 }
 
-void SensorArray::sample(const Solver& solver, std::vector<Series>& series) const {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    Series& target = series[i];
-    const Sampler& sampler = *samplers_[i];
-    if (!is_due(solver.time(), sensors_[i].interval, target.next_index)) continue;
-    if (sampler.is_event() && target.size() > 0) continue;
-    target.next_index = next_index_after(solver.time(), sensors_[i].interval, target.next_index);
-    values.assign(target.columns.size(), kDry);
-    const double weight = sampler.sample(solver, values);
-    if (sampler.is_event() && weight == 0.0) continue;
-    append(target, solver.time(), values, weight);
+SensorArray::Group& SensorArray::group_for(const Sensor& sensor, const Sampler& sampler) {
+  const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
+    return group.kind == sensor.kind && group.interval == sensor.interval;
+  });
+  if (same != groups_.end() && sampler.shares_a_table()) return *same;
+  empty_.emplace_back();
+  return groups_.emplace_back(Group{sensor.kind, sensor.interval, {}});
+}
+
+void SensorArray::sample(const Solver& solver, std::vector<SampleTable>& tables) const {
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const Group& group = groups_[i];
+    SampleTable& table = tables[i];
+    const double time = solver.time();
+    if (!is_due(time, group.interval, table.next_index)) continue;
+    if (group.samplers.front()->is_event() && table.size() > 0) continue;
+    table.next_index = next_index_after(time, group.interval, table.next_index);
+    if (!append(table, solver, group.samplers)) continue;
+    table.duration.push_back(table.time.empty() ? 0.0 : time - table.time.back());
+    table.time.push_back(time);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "engine/sph/solver.hpp"
-#include "engine/store/series.hpp"
+#include "engine/store/sample_table.hpp"
 
 namespace sluice {
 
@@ -21,26 +21,37 @@ class Sampler {
   [[nodiscard]] virtual double sample(const Solver& solver, std::span<double> values) const = 0;
   /// A sampler that looks for an event ends at its first sample and stores no dry ones.
   [[nodiscard]] virtual bool is_event() const { return false; }
+  /// Whether samplers of the kind may share a table, and so be asked on several threads at once.
+  [[nodiscard]] virtual bool shares_a_table() const { return true; }
 };
 
 [[nodiscard]] std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene);
 
-/// All sensors of a scene with their samplers. The samples and the schedule's state live in the
-/// `Series`, which go into the checkpoint; a SensorArray itself has nothing to save.
+/// All sensors of a scene with their samplers: those of one kind and interval together. The samples
+/// and the schedule's state live in the tables, which go into the checkpoint; a SensorArray itself
+/// has nothing to save.
 class SensorArray {
  public:
   explicit SensorArray(const Scene& scene);
 
-  /// One empty series per sensor, in the scene's order.
-  [[nodiscard]] std::vector<Series> empty_series() const;
+  /// The tables before the first sample.
+  [[nodiscard]] const std::vector<SampleTable>& empty_tables() const { return empty_; }
 
-  /// Appends to each series that is due at the solver's time. `series` must be in the scene's
-  /// order.
-  void sample(const Solver& solver, std::vector<Series>& series) const;
+  /// Appends to each table that is due at the solver's time. `tables` must have the names of
+  /// `empty_tables`.
+  void sample(const Solver& solver, std::vector<SampleTable>& tables) const;
 
  private:
-  std::vector<Sensor> sensors_;
-  std::vector<std::unique_ptr<Sampler>> samplers_;
+  /// The samplers of one table.
+  struct Group {
+    SensorKind kind;
+    double interval;  ///< s
+    std::vector<std::unique_ptr<Sampler>> samplers;
+  };
+  Group& group_for(const Sensor& sensor, const Sampler& sampler);
+
+  std::vector<Group> groups_;
+  std::vector<SampleTable> empty_;
 };
 
 }  // namespace sluice

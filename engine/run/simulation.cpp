@@ -35,10 +35,12 @@ void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
                                  checkpoint.solver.step, checkpoint.scene_hash, hash));
 }
 
-/// Samples cannot be matched to sensors by chance: names and columns must agree.
-void require_same_series(const std::vector<Series>& expected, const std::vector<Series>& found) {
-  const auto matches = [](const Series& a, const Series& b) {
-    return a.name == b.name && a.kind == b.kind && a.columns.size() == b.columns.size();
+/// Samples cannot be matched to sensors by chance: names, places and columns must agree.
+void require_same_sensors(const std::vector<SampleTable>& expected,
+                          const std::vector<SampleTable>& found) {
+  const auto matches = [](const SampleTable& a, const SampleTable& b) {
+    return a.names == b.names && a.places == b.places && a.kind == b.kind &&
+           a.columns.size() == b.columns.size();
   };
   if (std::equal(expected.begin(), expected.end(), found.begin(), found.end(), matches)) return;
   throw StorageError(StorageFault::corrupt,
@@ -57,7 +59,7 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       limits_(GuardLimits::for_method(scene_.method)),
       sensors_(scene_),
       solver_(start_solver(scene_, execution)),
-      series_(sensors_.empty_series()) {
+      samples_(sensors_.empty_tables()) {
   const Energy energy = solver_.energy();
   baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
   baselines_.min_density_excess_seen = solver_.extremes().min_density_excess;
@@ -72,11 +74,11 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
       limits_(GuardLimits::for_method(scene_.method)),
       sensors_(scene_),
       solver_(resume_solver(scene_, execution, checkpoint.solver)),
-      series_(std::move(checkpoint.series)),
+      samples_(std::move(checkpoint.samples)),
       baselines_(checkpoint.guards),
       next_frame_(checkpoint.next_frame) {
   require_same_scene(scene_hash_, checkpoint);
-  require_same_series(sensors_.empty_series(), series_);
+  require_same_sensors(sensors_.empty_tables(), samples_);
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();
   count_retired();
@@ -116,7 +118,7 @@ Checkpoint Simulation::checkpoint() const {
   kept.bit_exact = bit_exact_;
   kept.integrator = scene_.method.integrator;
   kept.solver = solver_.state();
-  kept.series = series_;
+  kept.samples = samples_;
   kept.guards = baselines_;
   kept.next_frame = next_frame_;
   return kept;
@@ -155,7 +157,7 @@ void Simulation::note_extremes() {
 
 void Simulation::sample() {
   const auto start = std::chrono::steady_clock::now();
-  sensors_.sample(solver_, series_);
+  sensors_.sample(solver_, samples_);
   sample_seconds_ += seconds_since(start);
 }
 

@@ -53,7 +53,7 @@ class Simulation {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Solver& solver() const { return solver_; }
-  [[nodiscard]] const std::vector<Series>& series() const { return series_; }
+  [[nodiscard]] const std::vector<SampleTable>& samples() const { return samples_; }
   [[nodiscard]] const GuardBaselines& baselines() const { return baselines_; }
   [[nodiscard]] std::size_t leaked() const { return leaked_; }
   [[nodiscard]] std::size_t overtopped() const { return overtopped_; }
@@ -75,7 +75,7 @@ class Simulation {
   GuardLimits limits_;
   SensorArray sensors_;
   Solver solver_;
-  std::vector<Series> series_;
+  std::vector<SampleTable> samples_;
   GuardBaselines baselines_;
   std::uint64_t next_frame_ = 0;
   bool bit_exact_ = true;

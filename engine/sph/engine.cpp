@@ -114,6 +114,10 @@ class Engine final : public Solver::Impl {
 
   void step() override;
   [[nodiscard]] Energy energy() override;
+  [[nodiscard]] FluidProbe probe() const override;
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+    team_.run(count, body);
+  }
   [[nodiscard]] std::vector<double> wall_pressures() const override;
   [[nodiscard]] double pair_lanes() const override;
   [[nodiscard]] std::size_t memory_bytes() const override;
@@ -670,6 +674,14 @@ template <typename T>
 Energy Engine<T>::energy() {
   return for_chunks<Energy>(
       [&](const ParticleSpan& p, Energy& sum) { sweeps_.updates.sum_energy(p, method, sum); });
+}
+
+template <typename T>
+FluidProbe Engine<T>::probe() const {
+  const Updates<T>& updates = sweeps_.updates;
+  return {method, particles, layout, bounds,
+          method.kernel == KernelKind::truncated_gaussian ? updates.sum_around_gaussian
+                                                          : updates.sum_around_wendland};
 }
 
 template <typename T>

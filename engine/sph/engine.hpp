@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "engine/sph/layout.hpp"
 #include "engine/sph/neighbours.hpp"
+#include "engine/sph/probes.hpp"
 #include "engine/sph/solver.hpp"
 #include "engine/sph/sweeps.hpp"
 #include "engine/sph/thread_team.hpp"
@@ -19,6 +21,8 @@ class Solver::Impl {
   virtual ~Impl() = default;
   virtual void step() = 0;
   [[nodiscard]] virtual Energy energy() = 0;
+  [[nodiscard]] virtual FluidProbe probe() const = 0;
+  virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
 
   Method method;
   Execution execution;

@@ -52,6 +52,12 @@ struct WendlandC2 {
                                                 : WendlandC2::slope(r_sq);
 }
 
+/// The constant of value(R^2).
+[[nodiscard]] inline double kernel_value_scale(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value_scale
+                                                : WendlandC2::value_scale;
+}
+
 /// The constant of slope(R^2).
 [[nodiscard]] inline double kernel_slope_scale(KernelKind kind) {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope_scale

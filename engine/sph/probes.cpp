@@ -10,7 +10,7 @@
 namespace sluice {
 
 template <class Body>
-void FluidProbe::for_each_in(const Box& box, const Body& body) const {
+void FluidProbe::for_runs_in(const Box& box, const Body& body) const {
   // The boxes hold their particles, in smoothing lengths; the slack covers single precision.
   const double h = method_.smoothing_length;
   const double slack = 1e-3;
@@ -26,34 +26,37 @@ void FluidProbe::for_each_in(const Box& box, const Body& body) const {
     const auto& before = bounds_.x_max_before;
     const auto begin = before.begin() + layout_.strip_begin[strip];
     const auto end = before.begin() + layout_.strip_begin[strip + 1];
-    auto cluster = std::lower_bound(begin, end, static_cast<float>(x_min));
-    for (; cluster != end; ++cluster) {
-      const auto c = static_cast<std::size_t>(cluster - before.begin());
-      if (static_cast<double>(bounds_.x_min_after[c]) > x_max) break;
-      for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
-        if (particles_.id[s] >= 0.0) body(s);
-      }
+    const auto first = std::lower_bound(begin, end, static_cast<float>(x_min));
+    const auto from = static_cast<std::size_t>(first - before.begin());
+    std::size_t to = from;
+    while (to < layout_.strip_begin[strip + 1] &&
+           static_cast<double>(bounds_.x_min_after[to]) <= x_max) {
+      ++to;
     }
+    if (from < to) body(kCluster * from, kCluster * to);
   }
 }
 
-Probe FluidProbe::pressure(const Vec& point, double h) const {
-  const LinearEquationOfState state{method_.sound_speed};
-  const Vec support = Vec::Constant(method_.support_ratio() * h);
-  const double inverse_sq = 1.0 / (h * h);
-  double weighted = 0.0;
-  double plain = 0.0;
-  double filled = 0.0;
-  for_each_in({point - support, point + support}, [&](std::size_t s) {
-    const double r_sq = (particles_.position(s) - point).squaredNorm() * inverse_sq;
-    const double w = kernel_value(method_.kernel, r_sq) * inverse_sq;
-    const double excess = particles_.density_excess[s];
-    weighted += state.pressure(excess) * w;
-    plain += w;
-    filled += w * method_.particle_mass() / (method_.reference_density + excess);
+template <class Body>
+void FluidProbe::for_each_in(const Box& box, const Body& body) const {
+  for_runs_in(box, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      if (particles_.id[s] >= 0.0) body(s);
+    }
   });
-  if (!(plain > 0.0)) return {};
-  return {weighted / plain, filled};
+}
+
+Probe FluidProbe::pressure(const Vec& point, double h) const {
+  const Vec support = Vec::Constant(method_.support_ratio() * h);
+  const Surroundings around{point, h, method_.reference_density};
+  PointSums sums;
+  for_runs_in({point - support, point + support}, [&](std::size_t begin, std::size_t end) {
+    sum_around_(particles_, begin, end, around, sums);
+  });
+  if (!(sums.kernel > 0.0)) return {};
+  const LinearEquationOfState state{method_.sound_speed};
+  const double scale = kernel_value_scale(method_.kernel) * method_.particle_mass() / (h * h);
+  return {state.pressure(sums.excess / sums.kernel), scale * sums.volumes};
 }
 
 Probe FluidProbe::surface_height(double x) const {

@@ -4,15 +4,24 @@
 #include "engine/sph/neighbours.hpp"
 #include "engine/sph/particles.hpp"
 #include "engine/sph/solver.hpp"
+#include "engine/sph/updates.hpp"
 
 namespace sluice {
 
 /// Values of the fluid at a point, from the particles around it. Finds them by the order in memory.
 class FluidProbe {
  public:
+  /// Updates::sum_around_... of the method's kernel.
+  using SumAround = void (*)(const Particles&, std::size_t begin, std::size_t end,
+                             const Surroundings&, PointSums&);
+
   FluidProbe(const Method& method, const Particles& particles, const Layout& layout,
-             const ClusterBounds& bounds)
-      : method_(method), particles_(particles), layout_(layout), bounds_(bounds) {}
+             const ClusterBounds& bounds, SumAround sum_around)
+      : method_(method),
+        particles_(particles),
+        layout_(layout),
+        bounds_(bounds),
+        sum_around_(sum_around) {}
 
   /// eq. 11 with smoothing length h, Pa; the weight is sum W V.
   [[nodiscard]] Probe pressure(const Vec& point, double h) const;
@@ -22,6 +31,10 @@ class FluidProbe {
   [[nodiscard]] double distance(const Vec& point) const;
 
  private:
+  /// Calls body(begin, end) for runs of slots, whole clusters, that hold at least all particles in
+  /// the box.
+  template <class Body>
+  void for_runs_in(const Box& box, const Body& body) const;
   /// Calls body(slot) for at least all particles in the box.
   template <class Body>
   void for_each_in(const Box& box, const Body& body) const;
@@ -30,6 +43,7 @@ class FluidProbe {
   const Particles& particles_;
   const Layout& layout_;
   const ClusterBounds& bounds_;
+  SumAround sum_around_;
 };
 
 }  // namespace sluice

@@ -5,8 +5,6 @@
 #include <limits>
 
 #include "engine/sph/engine.hpp"
-#include "engine/sph/equation_of_state.hpp"
-#include "engine/sph/probes.hpp"
 
 namespace sluice {
 
@@ -87,23 +85,21 @@ double Solver::suspect_id(Suspect suspect) const {
 
 Energy Solver::energy() const { return impl_->energy(); }
 
-Probe Solver::pressure_at(const Vec& point, double h) const {
-  return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds)
-      .pressure(point, h);
+void Solver::for_each(std::size_t count, const std::function<void(std::size_t)>& body) const {
+  impl_->for_each(count, body);
 }
 
-Probe Solver::surface_height_at(double x) const {
-  return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds)
-      .surface_height(x);
+Probe Solver::pressure_at(const Vec& point, double h) const {
+  return impl_->probe().pressure(point, h);
 }
+
+Probe Solver::surface_height_at(double x) const { return impl_->probe().surface_height(x); }
 
 Probe Solver::surge_front() const {
   if (impl_->particle_count == 0) return {};
   return {impl_->extremes.max_x + 0.5 * impl_->method.spacing, 1.0};
 }
 
-double Solver::distance_to_fluid(const Vec& point) const {
-  return FluidProbe(impl_->method, impl_->particles, impl_->layout, impl_->bounds).distance(point);
-}
+double Solver::distance_to_fluid(const Vec& point) const { return impl_->probe().distance(point); }
 
 }  // namespace sluice

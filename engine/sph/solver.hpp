@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -84,6 +85,10 @@ class Solver {
   [[nodiscard]] SolverState state() const;
   /// Id of a particle that is not finite, else of the suspect; -1 without particles.
   [[nodiscard]] double suspect_id(Suspect suspect) const;
+
+  /// Calls body(i) for each i in [0, count) on the solver's threads, for sensors: `body` may ask
+  /// for anything of the point probes below, and neither throws nor asks for the energy.
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& body) const;
 
   /// Energy now. Summed in the order of particles in memory.
   [[nodiscard]] Energy energy() const;

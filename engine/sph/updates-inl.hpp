@@ -16,6 +16,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "engine/sph/kernel-inl.hpp"
 #include "engine/sph/updates.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -371,6 +372,32 @@ inline void sum_energy(const ParticleSpan& p, const Method& method, Energy& out)
   out.internal += mass * c_sq * hn::GetLane(hn::SumOfLanes(d, compressions));
 }
 
+template <class Shape>
+void sum_around(const Particles& p, std::size_t begin, std::size_t end, const Surroundings& around,
+                PointSums& out) {
+  const State d;
+  const StateVec inverse_h = hn::Set(d, 1.0 / around.smoothing_length);
+  const StateVec x = hn::Set(d, around.point.x());
+  const StateVec y = hn::Set(d, around.point.y());
+  const StateVec rho_0 = hn::Set(d, around.reference_density);
+  StateVec kernel = hn::Zero(d);
+  StateVec excess = hn::Zero(d);
+  StateVec volumes = hn::Zero(d);
+  for (std::size_t s = begin; s < end; s += hn::Lanes(d)) {
+    const auto used = hn::LoadU(d, p.id.data() + s) >= hn::Zero(d);
+    const StateVec dx = (hn::LoadU(d, p.x.data() + s) - x) * inverse_h;
+    const StateVec dy = (hn::LoadU(d, p.y.data() + s) - y) * inverse_h;
+    const StateVec w = hn::IfThenElseZero(used, Shape::value(d, dx * dx + dy * dy));
+    const StateVec e = hn::IfThenElseZero(used, hn::LoadU(d, p.density_excess.data() + s));
+    kernel = kernel + w;
+    excess = excess + w * e;
+    volumes = volumes + w / (rho_0 + e);
+  }
+  out.kernel += hn::GetLane(hn::SumOfLanes(d, kernel));
+  out.excess += hn::GetLane(hn::SumOfLanes(d, excess));
+  out.volumes += hn::GetLane(hn::SumOfLanes(d, volumes));
+}
+
 template <typename T>
 void fill_updates(Updates<T>& out) {
   out.leap_frog = &leap_frog<T>;
@@ -387,6 +414,8 @@ void fill_updates(Updates<T>& out) {
   out.measure = &measure;
   out.measure_acceleration = &measure_acceleration;
   out.measure_rates = &measure_rates<T>;
+  out.sum_around_gaussian = &sum_around<GaussianShape>;
+  out.sum_around_wendland = &sum_around<WendlandShape>;
   out.sum_energy = &sum_energy;
 }
 

@@ -86,6 +86,20 @@ struct PairScales {
   const double* origin_y = nullptr;
 };
 
+/// A point to sum around.
+struct Surroundings {
+  Vec point = Vec::Zero();         ///< m
+  double smoothing_length = 0.0;   ///< h, m
+  double reference_density = 0.0;  ///< kg/m^3
+};
+
+/// Sums over the particles around a point, with the kernel's value but for its constant and 1/h^2.
+struct PointSums {
+  double kernel = 0.0;   ///< W
+  double excess = 0.0;   ///< W (rho - rho_0), kg/m^3
+  double volumes = 0.0;  ///< W/rho, m^3/kg
+};
+
 /// The loops over particles, one SIMD target; T is the type of the pair sums. All state is double.
 template <typename T>
 struct Updates {
@@ -118,6 +132,11 @@ struct Updates {
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;
   /// Largest acceleration of the rates.
   void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
+  /// Adds what is around a point of the particles in the slots [begin, end), whole clusters.
+  void (*sum_around_gaussian)(const Particles&, std::size_t begin, std::size_t end,
+                              const Surroundings&, PointSums&) = nullptr;
+  void (*sum_around_wendland)(const Particles&, std::size_t begin, std::size_t end,
+                              const Surroundings&, PointSums&) = nullptr;
   /// Adds the energy of the particles.
   void (*sum_energy)(const ParticleSpan&, const Method&, Energy&) = nullptr;
 };

@@ -8,7 +8,7 @@
 
 #include "engine/sph/method.hpp"
 #include "engine/sph/particles.hpp"
-#include "engine/store/series.hpp"
+#include "engine/store/sample_table.hpp"
 
 namespace sluice {
 
@@ -51,7 +51,7 @@ struct Checkpoint {
   bool bit_exact = true;    ///< false once a run has gone on with another build or SIMD target
   Integrator integrator = Integrator::modified_leap_frog;
   SolverState solver;
-  std::vector<Series> series;
+  std::vector<SampleTable> samples;
   GuardBaselines guards;
   std::uint64_t next_frame =
       0;  ///< the next frame is due at the first step with time >= next_frame * interval

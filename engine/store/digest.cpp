@@ -15,7 +15,7 @@ std::string physics_digest(const Checkpoint& checkpoint) {
 
 std::string series_digest(const Series& series) {
   DigestArchive archive;
-  walk_one_series(archive, "/series", series);
+  walk_samples(archive, {table_of(series)});
   return archive.finish();
 }
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <functional>
 #include <numeric>
 #include <string_view>
@@ -23,7 +23,8 @@ namespace {
 
 /// 512 KiB of doubles: fits HDF5's chunk cache of 1 MiB, so that a chunk is written once.
 constexpr std::uint64_t kLargestChunk = 65536;
-constexpr std::uint64_t kSmallestGrowth = std::uint64_t{1} << 20;
+/// What a file has beside its numbers, bytes: an image of the expected size is made in one piece.
+constexpr std::uint64_t kRoom = std::uint64_t{1} << 20;
 
 /// An HDF5 identifier with the function that gives it back.
 class Handle {
@@ -211,14 +212,15 @@ class FileMemory {
   FileMemory() = default;
   FileMemory(const FileMemory&) = delete;
   FileMemory& operator=(const FileMemory&) = delete;
-  ~FileMemory() { std::free(bytes_); }
+  ~FileMemory() = default;
 
   [[nodiscard]] H5FD_file_image_callbacks_t callbacks() {
     return {allocate, copy, resize, keep, share, leave, this};
   }
-  [[nodiscard]] Bytes first(std::size_t count) const {
-    const auto* bytes = static_cast<const std::byte*>(bytes_);
-    return {bytes, bytes + count};
+  /// The first `count` bytes; nothing is left.
+  [[nodiscard]] Bytes take(std::size_t count) {
+    bytes_.resize(count);
+    return std::move(bytes_);
   }
 
  private:
@@ -230,18 +232,21 @@ class FileMemory {
   static void* copy(void* to, const void* from, std::size_t size, Operation, void*) {
     return std::memcpy(to, from, size);
   }
-  static void* resize(void* bytes, std::size_t size, Operation, void* self) {
-    void* resized = std::realloc(bytes, size);
-    if (resized != nullptr) {
-      static_cast<FileMemory*>(self)->bytes_ = resized;
+  /// No exception may pass through HDF5.
+  static void* resize(void*, std::size_t size, Operation, void* self) {
+    Bytes& bytes = static_cast<FileMemory*>(self)->bytes_;
+    try {
+      bytes.resize(size);
+    } catch (const std::exception&) {
+      return nullptr;
     }
-    return resized;
+    return bytes.data();
   }
   static herr_t keep(void*, Operation, void*) { return 0; }
   static void* share(void* self) { return self; }
   static herr_t leave(void*) { return 0; }
 
-  void* bytes_ = nullptr;
+  Bytes bytes_;
 };
 
 }  // namespace
@@ -252,7 +257,7 @@ class Hdf5Writer::Impl {
     silence();
     const Handle access =
         check_.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "set up", "a file in memory");
-    const auto growth = static_cast<std::size_t>(std::max(expected_bytes, kSmallestGrowth));
+    const auto growth = static_cast<std::size_t>(expected_bytes + expected_bytes / 64 + kRoom);
     check_.require(H5Pset_fapl_core(access.get(), growth, false) >= 0, "set up", "memory");
     check_.require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST) >= 0,
                    "set", "the version of the layout");
@@ -328,7 +333,7 @@ class Hdf5Writer::Impl {
     const ssize_t size = H5Fget_file_image(file(), nullptr, 0);
     check_.require(size > 0, "size", "the file in memory");
     check_.require(H5Fclose(file_.release()) >= 0, "close", "the file in memory");
-    return memory_.first(static_cast<std::size_t>(size));
+    return memory_.take(static_cast<std::size_t>(size));
   }
 
  private:
@@ -413,7 +418,7 @@ class Hdf5Reader::Impl {
     silence();
     const Handle access =
         check_.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "set up", "a file in memory");
-    check_.require(H5Pset_fapl_core(access.get(), kSmallestGrowth, false) >= 0, "set up", "memory");
+    check_.require(H5Pset_fapl_core(access.get(), kRoom, false) >= 0, "set up", "memory");
     // HDF5 takes its own copy of the bytes; its signature lacks the const.
     auto* bytes = const_cast<std::byte*>(image.data());
     check_.require(H5Pset_file_image(access.get(), bytes, image.size()) >= 0, "take", "the image");

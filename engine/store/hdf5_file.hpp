@@ -35,7 +35,7 @@ struct DataSetInfo {
 /// a NUL or that is no UTF-8, io for anything that HDF5 refuses. For one thread at a time.
 class Hdf5Writer {
  public:
-  /// `expected_bytes` sizes the growth of the image.
+  /// `expected_bytes`, of all numbers, sizes the image.
   explicit Hdf5Writer(std::uint64_t expected_bytes = 0);
   ~Hdf5Writer();
   Hdf5Writer(Hdf5Writer&&) noexcept;

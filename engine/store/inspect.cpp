@@ -98,7 +98,7 @@ Json data_set(const Hdf5Reader& reader, const std::string& path) {
   return facts;
 }
 
-/// One entry of `series`: its attributes and the span of its times.
+/// One entry of `series`: the attributes of a table of samples and the span of its times.
 Json series_facts(const Hdf5Reader& reader, const std::string& path) {
   Json facts = attributes(reader, path);
   std::vector<double> time;
@@ -231,9 +231,11 @@ void add_series(std::string& text, const Json& list) {
         series.contains("from")
             ? fmt::format("{} s ... {} s", series["from"].dump(), series["to"].dump())
             : "empty";
-    text += fmt::format("  {:<20} {:<16} {} samples, {}\n", plain(series.value("name", Json("?"))),
-                        plain(series.value("kind", Json("?"))),
-                        series.value("count", Json(0)).dump(), span);
+    for (const Json& name : series.value("names", Json::array())) {
+      text += fmt::format("  {:<20} {:<16} {} samples, {}\n", plain(name),
+                          plain(series.value("kind", Json("?"))),
+                          series.value("count", Json(0)).dump(), span);
+    }
   }
 }
 

@@ -142,32 +142,35 @@ std::string joined_units(const std::vector<Series::Column>& list) {
 }
 
 template <class Archive, class Subject>
-void one_series(Archive& archive, const std::string& path, Subject& series) {
+void sample_table(Archive& archive, const std::string& path, Subject& table) {
   archive.group(path);
-  archive.attribute(path, "name", series.name);
-  archive.attribute(path, "kind", series.kind);
-  columns(archive, path, series.columns);
-  archive.attribute(path, "next_index", series.next_index);
-  archive.count(path, "count", series.time);
-  const std::uint64_t samples = series.time.size();
-  archive.data_set(path + "/time", series.time, {samples}, {"s", "time of the sample"});
-  archive.data_set(path + "/duration", series.duration, {samples},
-                   {"s", "time since the sensor's sample before"});
-  archive.data_set(path + "/values", series.values, {samples, series.columns.size()},
-                   {joined_units(series.columns), "one column per entry of 'columns'; NaN: dry"});
-  archive.data_set(path + "/weight", series.weight, {samples},
+  archive.attribute(path, "kind", table.kind);
+  archive.attribute(path, "names", table.names);
+  columns(archive, path, table.columns);
+  archive.attribute(path, "next_index", table.next_index);
+  archive.count(path, "count", table.time);
+  const std::uint64_t samples = table.size();
+  const std::uint64_t sensors = table.sensors();
+  archive.data_set(path + "/place", table.places, {sensors},
+                   {"1", "places of the sensors in the scene's list, from 0 on"});
+  archive.data_set(path + "/time", table.time, {samples}, {"s", "time of the sample"});
+  archive.data_set(path + "/duration", table.duration, {samples},
+                   {"s", "time since the sample before"});
+  archive.data_set(path + "/values", table.values, {samples, sensors, table.columns.size()},
+                   {joined_units(table.columns), "by sample, sensor and column; NaN: dry"});
+  archive.data_set(path + "/weight", table.weight, {samples, sensors},
                    {"1", "kernel weight that carried the value; 0: dry"});
 }
 
-/// Numbered groups and not named ones: a name may hold what a path cannot, and the order counts.
-std::string series_path(std::size_t index) { return fmt::format("/series/{:04}", index); }
+/// Numbered groups and not named ones: a name may hold what a path cannot.
+std::string table_path(std::size_t index) { return fmt::format("/series/{:04}", index); }
 
 template <class Archive, class Subject>
-void series_list(Archive& archive, Subject& list) {
+void sample_tables(Archive& archive, Subject& tables) {
   archive.group("/series");
-  archive.count("/series", "count", list);
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    one_series(archive, series_path(i), list[i]);
+  archive.count("/series", "count", tables);
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    sample_table(archive, table_path(i), tables[i]);
   }
 }
 
@@ -187,7 +190,7 @@ void physics(Archive& archive, Subject& checkpoint) {
   archive.attribute("/", "next_frame", checkpoint.next_frame);
   particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
   retired_particles(archive, checkpoint.solver.retired);
-  series_list(archive, checkpoint.series);
+  sample_tables(archive, checkpoint.samples);
   guard_baselines(archive, checkpoint.guards);
 }
 
@@ -254,14 +257,14 @@ void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint) {
   physics(archive, checkpoint);
 }
 
-void walk_series_list(WriteArchive& archive, const std::vector<Series>& list) {
-  series_list(archive, list);
+void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables) {
+  sample_tables(archive, tables);
 }
-void walk_series_list(ReadArchive& archive, std::vector<Series>& list) {
-  series_list(archive, list);
+void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables) {
+  sample_tables(archive, tables);
 }
-void walk_one_series(DigestArchive& archive, const std::string& path, const Series& series) {
-  one_series(archive, path, series);
+void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables) {
+  sample_tables(archive, tables);
 }
 
 void walk_frame(WriteArchive& archive, const Frame& frame) { frame_layout(archive, frame); }

@@ -7,7 +7,7 @@
 #include "engine/store/archive.hpp"
 #include "engine/store/checkpoint.hpp"
 #include "engine/store/frame_io.hpp"
-#include "engine/store/series.hpp"
+#include "engine/store/sample_table.hpp"
 
 namespace sluice {
 
@@ -19,8 +19,8 @@ struct Format {
   std::string_view name;
   std::uint64_t version;
 };
-inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 3};
-inline constexpr Format kSeriesFormat{"sluice-series", 1};
+inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 4};
+inline constexpr Format kSeriesFormat{"sluice-series", 2};
 inline constexpr Format kFrameFormat{"sluice-frame", 1};
 
 /// Writes the format, or throws StorageError: not_ours or unsupported_version when the file's is
@@ -36,9 +36,9 @@ void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint);
 void walk_physics(ReadArchive& archive, Checkpoint& checkpoint);
 void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint);
 
-void walk_series_list(WriteArchive& archive, const std::vector<Series>& list);
-void walk_series_list(ReadArchive& archive, std::vector<Series>& list);
-void walk_one_series(DigestArchive& archive, const std::string& path, const Series& series);
+void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables);
+void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables);
+void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables);
 
 void walk_frame(WriteArchive& archive, const Frame& frame);
 void walk_frame(ReadArchive& archive, Frame& frame);

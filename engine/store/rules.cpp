@@ -58,36 +58,63 @@ void require_retired(const Rules& rules, const std::vector<Retired>& list) {
   }
 }
 
-void require_values(const Rules& rules, const std::string& what, const Series& series) {
-  const std::size_t width = series.columns.size();
-  for (std::size_t i = 0; i < series.values.size(); ++i) {
-    const double value = series.values[i];
-    const bool dry = std::isnan(value) && series.weight[i / width] == 0.0;
+std::string describe(const SampleTable& table) {
+  const std::string first = table.names.empty() ? "" : fmt::format(" '{}'", table.names.front());
+  return table.sensors() < 2 ? "series" + first
+                             : fmt::format("series{} to '{}'", first, table.names.back());
+}
+
+void require_values(const Rules& rules, const SampleTable& table) {
+  const std::size_t columns = table.columns.size();
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    const double value = table.values[i];
+    const double weight = table.weight[i / columns];
+    const bool dry = std::isnan(value) && weight == 0.0;
     if (!std::isfinite(value) && !dry) {
-      rules.refuse(
-          fmt::format("{} value of sample {} is {} with weight {}; only a dry one, of "
-                      "weight 0, may be no number",
-                      what, i / width, value, series.weight[i / width]));
+      const std::size_t entry = i / columns;
+      rules.refuse(fmt::format(
+          "series '{}': value of sample {} is {} with weight {}; only a dry one, of "
+          "weight 0, may be no number",
+          table.names[entry % table.sensors()], entry / table.sensors(), value, weight));
     }
   }
 }
 
-void require_series(const Rules& rules, const Series& series) {
-  const std::string what = fmt::format("series '{}':", series.name);
-  const std::size_t count = series.time.size();
-  rules.require_count(what + " duration", series.duration.size(), count);
-  rules.require_count(what + " weight", series.weight.size(), count);
-  rules.require_count(what + " values", series.values.size(), count * series.columns.size());
-  rules.require_finite(what + " time", series.time);
-  rules.require_finite(what + " duration", series.duration);
-  rules.require_finite(what + " weight", series.weight);
+void require_table(const Rules& rules, const SampleTable& table) {
+  const std::string what = describe(table) + ":";
+  const std::size_t count = table.size();
+  rules.require_count(what + " places", table.places.size(), table.sensors());
+  rules.require_count(what + " duration", table.duration.size(), count);
+  rules.require_count(what + " weight", table.weight.size(), count * table.sensors());
+  rules.require_count(what + " values", table.values.size(), count * table.width());
+  rules.require_finite(what + " time", table.time);
+  rules.require_finite(what + " duration", table.duration);
+  rules.require_finite(what + " weight", table.weight);
   for (std::size_t i = 1; i < count; ++i) {
-    if (series.time[i] <= series.time[i - 1]) {
-      rules.refuse(fmt::format("{} time of sample {} is {}, not after {}", what, i, series.time[i],
-                               series.time[i - 1]));
+    if (table.time[i] <= table.time[i - 1]) {
+      rules.refuse(fmt::format("{} time of sample {} is {}, not after {}", what, i, table.time[i],
+                               table.time[i - 1]));
     }
   }
-  require_values(rules, what, series);
+  require_values(rules, table);
+}
+
+/// Each sensor of the scene's list is in one table.
+void require_places(const Rules& rules, const std::vector<SampleTable>& tables) {
+  std::size_t count = 0;
+  for (const SampleTable& table : tables) {
+    count += table.sensors();
+  }
+  std::vector<bool> taken(count, false);
+  for (const SampleTable& table : tables) {
+    for (const std::uint64_t place : table.places) {
+      if (place >= count || taken[static_cast<std::size_t>(place)]) {
+        rules.refuse(fmt::format("{}: place {} is taken twice or beyond the {} sensors",
+                                 describe(table), place, count));
+      }
+      taken[static_cast<std::size_t>(place)] = true;
+    }
+  }
 }
 
 }  // namespace
@@ -102,14 +129,15 @@ void require_sound(const Checkpoint& checkpoint, StorageFault fault) {
     rules.require_finite(fmt::format("guard number {}", number.name),
                          checkpoint.guards.*number.member);
   }
-  require_sound(checkpoint.series, fault);
+  require_sound(checkpoint.samples, fault);
 }
 
-void require_sound(const std::vector<Series>& series, StorageFault fault) {
+void require_sound(const std::vector<SampleTable>& tables, StorageFault fault) {
   const Rules rules(fault);
-  for (const Series& one : series) {
-    require_series(rules, one);
+  for (const SampleTable& table : tables) {
+    require_table(rules, table);
   }
+  require_places(rules, tables);
 }
 
 }  // namespace sluice

@@ -11,11 +11,12 @@ namespace sluice {
 // Each throws StorageError with `fault` and names the field, the index and the value.
 
 /// Carried fields have one finite value per particle, the others none; all numbers are finite; the
-/// series keep their rules.
+/// samples keep their rules.
 void require_sound(const Checkpoint& checkpoint, StorageFault fault);
 
-/// Times are finite and strictly increasing; every sample has a duration, a weight and one value
-/// per column; a value that is not finite is NaN with weight 0.
-void require_sound(const std::vector<Series>& series, StorageFault fault);
+/// Times are finite and strictly increasing; every sample has a duration, and for each sensor a
+/// weight and one value per column; a value that is not finite is NaN with weight 0. Every place in
+/// the scene's list is taken once.
+void require_sound(const std::vector<SampleTable>& tables, StorageFault fault);
 
 }  // namespace sluice

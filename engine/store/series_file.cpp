@@ -7,35 +7,35 @@
 namespace sluice {
 namespace {
 
-Bytes encode(const std::vector<Series>& series) {
-  require_sound(series, StorageFault::invalid_content);
-  WriteArchive archive(0);
+Bytes encode(const std::vector<SampleTable>& tables) {
+  require_sound(tables, StorageFault::invalid_content);
+  WriteArchive archive(number_bytes(tables));
   walk_format(archive, kSeriesFormat);
-  walk_series_list(archive, series);
+  walk_samples(archive, tables);
   return archive.image();
 }
 
-std::vector<Series> decode(ByteSpan image) {
+std::vector<SampleTable> decode(ByteSpan image) {
   ReadArchive archive(image);
-  std::vector<Series> series;
+  std::vector<SampleTable> tables;
   walk_format(archive, kSeriesFormat);
-  walk_series_list(archive, series);
+  walk_samples(archive, tables);
   archive.require_all_met();
-  require_sound(series, StorageFault::corrupt);
-  return series;
+  require_sound(tables, StorageFault::corrupt);
+  return tables;
 }
 
 }  // namespace
 
-void write_series(const std::filesystem::path& path, const std::vector<Series>& series,
+void write_series(const std::filesystem::path& path, const std::vector<SampleTable>& tables,
                   Durability durability, FileSystem& system) {
-  const Bytes image = naming(path, [&] { return encode(series); });
+  const Bytes image = naming(path, [&] { return encode(tables); });
   publish(path, image, durability, system);
 }
 
 std::vector<Series> read_series(const std::filesystem::path& path) {
   const Bytes image = read_verified(path);
-  return naming(path, [&] { return decode(image); });
+  return split(naming(path, [&] { return decode(image); }));
 }
 
 }  // namespace sluice

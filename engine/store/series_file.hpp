@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/store/publish.hpp"
-#include "engine/store/series.hpp"
+#include "engine/store/sample_table.hpp"
 
 namespace sluice {
 
@@ -12,12 +12,13 @@ namespace sluice {
 /// readers while a run goes on. A run never reads it back (its series are in the checkpoint), its
 /// trailer shows damage by a power cut, and the next publication, about a second after the run goes
 /// on, replaces it. Publish the last one of a run with Durability::power_cut. Throws StorageError:
-/// invalid_content when a series breaks its rules, and what publish throws.
-void write_series(const std::filesystem::path& path, const std::vector<Series>& series,
+/// invalid_content when the samples break their rules, and what publish throws.
+void write_series(const std::filesystem::path& path, const std::vector<SampleTable>& tables,
                   Durability durability = Durability::process_crash,
                   FileSystem& system = FileSystem::real());
 
-/// Reads it back bit by bit. Throws StorageError: corrupt, unsupported_version, not_ours, io.
+/// Reads it back bit by bit, one series per sensor in the order of the scene's list. Throws
+/// StorageError: corrupt, unsupported_version, not_ours, io.
 [[nodiscard]] std::vector<Series> read_series(const std::filesystem::path& path);
 
 }  // namespace sluice

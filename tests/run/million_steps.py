@@ -106,8 +106,8 @@ def drift(folder):
     checkpoint = max(folder.glob("checkpoint-*.h5"))
     with h5py.File(checkpoint) as file:
         last = max(1, int(file["series/0000"].attrs["count"]) // 20)
-        floor = file["series/0000/values"][-last:, 0].mean() / (DENSITY * GRAVITY * DEPTH)
-        energy = file["series/0001/values"][:]
+        floor = file["series/0000/values"][-last:, 0, 0].mean() / (DENSITY * GRAVITY * DEPTH)
+        energy = file["series/0001/values"][:, 0, :]
         columns = list(file["series/0001"].attrs["columns"])
         scale = DENSITY * GRAVITY * DEPTH**2 * WIDTH
         kinetic = energy[-last:, columns.index("kinetic")].mean() / scale

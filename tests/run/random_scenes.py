@@ -73,12 +73,12 @@ def check_particles(file, scene, started):
 
 
 def check_series(file):
-    for series in file["series"].values():
-        name = series.attrs["name"]
-        time, weight, values = (series[key][:] for key in ("time", "weight", "values"))
-        require(numpy.isfinite(time).all() and (numpy.diff(time) > 0).all(), f"times of {name}")
-        require(numpy.isfinite(weight).all(), f"weights of {name}")
-        require(numpy.isfinite(values[weight > 0]).all(), f"values of {name} are not finite")
+    for table in file["series"].values():
+        names = list(table.attrs["names"])
+        time, weight, values = (table[key][:] for key in ("time", "weight", "values"))
+        require(numpy.isfinite(time).all() and (numpy.diff(time) > 0).all(), f"times of {names}")
+        require(numpy.isfinite(weight).all(), f"weights of {names}")
+        require(numpy.isfinite(values[weight > 0]).all(), f"values of {names} are not finite")
 
 
 def check_energy(outcome):

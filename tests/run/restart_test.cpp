@@ -23,7 +23,7 @@ constexpr std::array kThreads{1, 2, 3, 8};
 /// Digest of everything, then of each series.
 std::vector<std::string> digests(const Simulation& simulation) {
   std::vector<std::string> all{physics_digest(simulation.checkpoint())};
-  for (const Series& series : simulation.series()) all.push_back(series_digest(series));
+  for (const Series& series : split(simulation.samples())) all.push_back(series_digest(series));
   return all;
 }
 

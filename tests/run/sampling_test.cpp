@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "engine/run/simulation.hpp"
+#include "engine/store/digest.hpp"
 #include "tests/run/scenes.hpp"
 
 namespace sluice {
@@ -111,6 +114,72 @@ TEST(PressureSampler, WithoutFluidTheFaceFeelsTheAirWithoutWeight) {
   const Sample plain = sample(scene, at_wall(scene, std::nullopt), solver);
   EXPECT_TRUE(std::isnan(plain.value));
   EXPECT_EQ(plain.weight, 0.0);
+}
+
+Sensor sensor_at(const std::string& name, SensorKind kind, const Vec& position, double interval) {
+  Sensor sensor;
+  sensor.name = name;
+  sensor.kind = kind;
+  sensor.position = position;
+  sensor.interval = interval;
+  return sensor;
+}
+
+TEST(SensorArray, KeepsSensorsOfOneKindAndIntervalInOneTable) {
+  Scene scene = small_dam_break();
+  const Vec low(0.05, 0.01);
+  const Vec high(0.05, 0.10);
+  scene.sensors = {sensor_at("low", SensorKind::pressure, low, 0.001),
+                   sensor_at("energy", SensorKind::energy, low, 0.001),
+                   sensor_at("often", SensorKind::pressure, low, 0.0),
+                   sensor_at("height", SensorKind::surface_height, low, 0.001),
+                   sensor_at("high", SensorKind::pressure, high, 0.001),
+                   sensor_at("first", SensorKind::arrival, low, 0.001),
+                   sensor_at("second", SensorKind::arrival, high, 0.001),
+                   sensor_at("energy again", SensorKind::energy, low, 0.001)};
+  const SensorArray array(scene);
+  std::vector<std::vector<std::string>> names;
+  for (const SampleTable& table : array.empty_tables()) names.push_back(table.names);
+  const std::vector<std::vector<std::string>> expected{
+      {"low", "high"}, {"energy"}, {"often"}, {"height"}, {"first"}, {"second"}, {"energy again"}};
+  EXPECT_EQ(names, expected);
+
+  std::vector<SampleTable> tables = array.empty_tables();
+  const Solver solver = fluid_at(scene, columns_at_wall(scene, 12), 1000.0);
+  array.sample(solver, tables);
+  const std::vector<Series> series = split(tables);
+  ASSERT_EQ(series.size(), scene.sensors.size());
+  for (std::size_t i = 0; i < series.size(); ++i) EXPECT_EQ(series[i].name, scene.sensors[i].name);
+  EXPECT_EQ(series[5].size(), 0U) << "no fluid has arrived";
+}
+
+TEST(SensorArray, SamplesManySensorsToTheSameBitsWithAnyNumberOfThreads) {
+  Scene scene = small_dam_break();
+  scene.sensors.clear();
+  for (int i = 0; i < 100; ++i) {
+    const Vec place(0.0015 * i, 0.0016 * i);
+    const SensorKind kind = i % 3 == 0 ? SensorKind::surface_height : SensorKind::pressure;
+    scene.sensors.push_back(sensor_at("s" + std::to_string(i), kind, place, 0.0));
+  }
+  const auto run = [&](int threads) {
+    Simulation simulation(scene, {threads, ""});
+    while (simulation.solver().step_count() < 40) simulation.step();
+    return simulation;
+  };
+  const Simulation one = run(1);
+  const std::vector<Series> series = split(one.samples());
+  const std::string digest = physics_digest(one.checkpoint());
+  for (const int threads : {2, 3, 8}) {
+    EXPECT_EQ(physics_digest(run(threads).checkpoint()), digest) << threads;
+  }
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const Sample alone = sample(scene, scene.sensors[i], one.solver());
+    ASSERT_EQ(series[i].size(), 41U);
+    EXPECT_EQ(series[i].weight.back(), alone.weight) << i;
+    if (alone.weight > 0.0) {
+      EXPECT_EQ(series[i].values.back(), alone.value) << i;
+    }
+  }
 }
 
 }  // namespace

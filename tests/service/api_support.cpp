@@ -55,7 +55,7 @@ std::string Service::submit_in(JobState state) {
 }
 
 void Service::write_samples(const std::string& id, const Series& series) {
-  write_series(data.job(id) / "series.h5", {series});
+  write_series(data.job(id) / "series.h5", {table_of(series)});
 }
 
 Json body_of(const Response& response) {

@@ -39,10 +39,10 @@ TEST(CheckpointFile, ComesBackToTheLastBitForBothIntegrators) {
   }
 }
 
-TEST(CheckpointFile, ComesBackWithNothingRetiredAndNoSeries) {
+TEST(CheckpointFile, ComesBackWithNothingRetiredAndNoSamples) {
   Checkpoint written = make_checkpoint(0);
   written.solver.retired.clear();
-  written.series.clear();
+  written.samples.clear();
   written.bit_exact = true;
   EXPECT_TRUE(same_bits(decode_checkpoint(encode_checkpoint(written)), written));
 }
@@ -82,7 +82,7 @@ TEST(CheckpointFile, OfAnotherSceneOrIntegratorIsRefused) {
 
 TEST(CheckpointFile, OfAnotherFormatIsRefused) {
   const TemporaryFolder folder;
-  write_series(folder / "series.h5", make_series_list());
+  write_series(folder / "series.h5", make_samples());
   write_frame(folder / "frame.h5", make_test_frame(3));
   publish(folder / "checkpoint.h5", encode_checkpoint(make_checkpoint(1)), Durability::power_cut);
   expect_fault(StorageFault::not_ours, [&] { (void)read_checkpoint(folder / "series.h5"); });
@@ -102,14 +102,17 @@ TEST(CheckpointFile, IsNotWrittenFromContentThatBreaksTheRules) {
       [](Checkpoint& c) { c.solver.time_step = -HUGE_VAL; },
       [](Checkpoint& c) { c.solver.retired[1].x = kNan; },
       [](Checkpoint& c) { c.guards.energy_scale = kNan; },
-      [](Checkpoint& c) { c.series[0].weight[0] = 0.5; },  // NaN with a weight
-      [](Checkpoint& c) { c.series[0].values[1] = HUGE_VAL; },
-      [](Checkpoint& c) { c.series[0].time[2] = c.series[0].time[1]; },
-      [](Checkpoint& c) { c.series[0].duration.pop_back(); },
-      [](Checkpoint& c) { c.series[1].values.pop_back(); },
-      [](Checkpoint& c) { c.series[1].weight[1] = kNan; },
+      [](Checkpoint& c) { c.samples[0].weight[0] = 0.5; },  // NaN with a weight
+      [](Checkpoint& c) { c.samples[0].values[1] = HUGE_VAL; },
+      [](Checkpoint& c) { c.samples[0].time[2] = c.samples[0].time[1]; },
+      [](Checkpoint& c) { c.samples[0].duration.pop_back(); },
+      [](Checkpoint& c) { c.samples[1].values.pop_back(); },
+      [](Checkpoint& c) { c.samples[1].weight[1] = kNan; },
+      [](Checkpoint& c) { c.samples[0].places[1] = 1; },  // the energy's
+      [](Checkpoint& c) { c.samples[0].places[1] = 4; },  // of four sensors
+      [](Checkpoint& c) { c.samples[0].places.pop_back(); },
       [](Checkpoint& c) { c.build = std::string("a\0b", 3); },
-      [](Checkpoint& c) { c.series[0].name = "\xC3"; },  // half a UTF-8 character
+      [](Checkpoint& c) { c.samples[0].names[1] = "\xC3"; },  // half a UTF-8 character
   };
   for (std::size_t i = 0; i < faults.size(); ++i) {
     Checkpoint checkpoint = make_checkpoint(7);
@@ -144,7 +147,7 @@ void copy_attribute(const Hdf5Reader& from, Hdf5Writer& to, const std::string& p
     default:
       break;
   }
-  if (name == "columns" || name == "units") {
+  if (name == "columns" || name == "units" || name == "names") {
     return copy(std::vector<std::string>());
   }
   copy(std::string());
@@ -268,7 +271,8 @@ TEST(CheckpointLayout, RefusesOtherVersionsTypesUnitsShapesAndValues) {
   refuse(StorageFault::corrupt, replaced("/retired@count", huge));
   refuse(StorageFault::corrupt, replaced("/particles/vx@unit", std::string("km/h")));
   refuse(StorageFault::corrupt, replaced("/series/0000@units", std::vector<std::string>{}));
-  for (const char* set : {"/particles/vy", "/series/0000/time", "/series/0001/values"}) {
+  for (const char* set :
+       {"/particles/vy", "/series/0000/time", "/series/0000/weight", "/series/0001/values"}) {
     const auto shorten = [&](const std::string& path, std::vector<double>& values, Shape& shape) {
       if (path == set) {
         shape = {values.size() - 1};
@@ -315,15 +319,15 @@ TEST(CheckpointLayout, IsDescribedWithEveryNameInItsDocument) {
 
 TEST(SeriesFile, ComesBackToTheLastBit) {
   const TemporaryFolder folder;
-  write_series(folder / "series.h5", make_series_list());
-  EXPECT_TRUE(same_bits(read_series(folder / "series.h5"), make_series_list()));
+  write_series(folder / "series.h5", make_samples());
+  EXPECT_TRUE(same_bits(read_series(folder / "series.h5"), split(make_samples())));
   write_series(folder / "series.h5", {}, Durability::power_cut);
   EXPECT_TRUE(read_series(folder / "series.h5").empty());
 }
 
 TEST(SeriesFile, ThatIsReplacedStaysWholeForWhoHasItOpen) {
   const TemporaryFolder folder;
-  write_series(folder / "series.h5", make_series_list());
+  write_series(folder / "series.h5", make_samples());
   const InputFile open(folder / "series.h5");
   const Bytes before = read_bytes(folder / "series.h5");
   write_series(folder / "series.h5", {});

@@ -52,26 +52,28 @@ TemporaryFolder::~TemporaryFolder() {
   fs::remove_all(path_, ignored);
 }
 
-std::vector<Series> make_series_list() {
+std::vector<SampleTable> make_samples() {
   const double dry = Limits::quiet_NaN();
   return {
-      {"P1",
-       "pressure",
+      {"pressure",
        {{"value", "Pa"}},
+       {"P1", "P2"},
+       {0, 2},
        {0.0, 0.1, 0.3},
        {0.0, 0.1, 0.2},
-       {dry, -0.0, 1e-310},
-       {0.0, 0.5, 1.0},
+       {dry, 7.0, -0.0, 8.0, 1e-310, 9.0},
+       {0.0, 1.0, 0.5, 0.75, 1.0, 0.25},
        7},
       {"energy",
-       "energy",
        {{"kinetic", "J/m"}, {"potential", "J/m"}, {"internal", "J/m"}},
+       {"energy"},
+       {1},
        {0.0, 0.2},
        {0.0, 0.2},
        {0.0, 1.0, 2.0, 0.5, 0.25, 0.125},
        {1.0, 1.0},
        2},
-      {"späte Ankunft / 1", "arrival", {{"value", "s"}}, {}, {}, {}, {}, 0},
+      {"arrival", {{"value", "s"}}, {"späte Ankunft / 1"}, {3}, {}, {}, {}, {}, 0},
   };
 }
 
@@ -93,7 +95,7 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
   }
   checkpoint.solver.retired = {{3.0, RetireCause::overtopped, 11, 0.011, 1.5, 0.61},
                                {5.0, RetireCause::leaked, 12, 0.012, -0.1, -0.0}};
-  checkpoint.series = make_series_list();
+  checkpoint.samples = make_samples();
   checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0, -60.0, 70.0, 80.0, 90.0};
   checkpoint.next_frame = 4;
   return checkpoint;
@@ -136,14 +138,16 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return same_lists(a, b, [](double x, double y) { return same_bits(x, y); });
 }
 
-bool same_bits(const Series& a, const Series& b) {
+bool same_bits(const Series& a, const Series& b) { return same_bits(table_of(a), table_of(b)); }
+
+bool same_bits(const SampleTable& a, const SampleTable& b) {
   const auto same_columns = [](const Series::Column& x, const Series::Column& y) {
     return x.name == y.name && x.unit == y.unit;
   };
-  return a.name == b.name && a.kind == b.kind && same_lists(a.columns, b.columns, same_columns) &&
-         same_bits(a.time, b.time) && same_bits(a.duration, b.duration) &&
-         same_bits(a.values, b.values) && same_bits(a.weight, b.weight) &&
-         a.next_index == b.next_index;
+  return a.names == b.names && a.places == b.places && a.kind == b.kind &&
+         same_lists(a.columns, b.columns, same_columns) && same_bits(a.time, b.time) &&
+         same_bits(a.duration, b.duration) && same_bits(a.values, b.values) &&
+         same_bits(a.weight, b.weight) && a.next_index == b.next_index;
 }
 
 bool same_bits(const std::vector<Series>& a, const std::vector<Series>& b) {
@@ -151,6 +155,9 @@ bool same_bits(const std::vector<Series>& a, const std::vector<Series>& b) {
 }
 
 bool same_bits(const Checkpoint& a, const Checkpoint& b) {
+  const auto same_tables = [](const SampleTable& x, const SampleTable& y) {
+    return same_bits(x, y);
+  };
   const bool fields = std::all_of(kFields.begin(), kFields.end(), [&](const Field& field) {
     return same_bits(a.solver.particles.*field.member, b.solver.particles.*field.member);
   });
@@ -159,8 +166,9 @@ bool same_bits(const Checkpoint& a, const Checkpoint& b) {
          a.integrator == b.integrator && a.solver.step == b.solver.step &&
          same_bits(a.solver.time, b.solver.time) &&
          same_bits(a.solver.time_step, b.solver.time_step) &&
-         same_lists(a.solver.retired, b.solver.retired, same) && same_bits(a.series, b.series) &&
-         a.guards == b.guards && a.next_frame == b.next_frame;
+         same_lists(a.solver.retired, b.solver.retired, same) &&
+         same_lists(a.samples, b.samples, same_tables) && a.guards == b.guards &&
+         a.next_frame == b.next_frame;
 }
 
 Bytes read_bytes(const fs::path& path) {

@@ -33,7 +33,7 @@ class TemporaryFolder {
 /// denormals, extremes), series with and without samples and with dry ones, retired particles.
 [[nodiscard]] Checkpoint make_checkpoint(std::uint64_t step, std::size_t count = 50,
                                          Integrator integrator = Integrator::modified_leap_frog);
-[[nodiscard]] std::vector<Series> make_series_list();
+[[nodiscard]] std::vector<SampleTable> make_samples();
 [[nodiscard]] Frame make_test_frame(std::size_t count);
 
 /// Runs `action`, which returns an exit status, in a child process. Its exit status, 99 when it
@@ -45,6 +45,7 @@ class TemporaryFolder {
 [[nodiscard]] bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 [[nodiscard]] bool same_bits(const Series& a, const Series& b);
 [[nodiscard]] bool same_bits(const std::vector<Series>& a, const std::vector<Series>& b);
+[[nodiscard]] bool same_bits(const SampleTable& a, const SampleTable& b);
 [[nodiscard]] bool same_bits(const Checkpoint& a, const Checkpoint& b);
 
 [[nodiscard]] Bytes read_bytes(const std::filesystem::path& path);

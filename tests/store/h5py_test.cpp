@@ -22,7 +22,7 @@ TEST(H5py, ReadsOurFilesAndGetsTextsAsText) {
   }
   const TemporaryFolder folder;
   const fs::path checkpoint = write_checkpoint(folder.path(), make_checkpoint(123));
-  write_series(folder / "series.h5", make_series_list());
+  write_series(folder / "series.h5", make_samples());
   write_frame(folder / "frame.h5", make_test_frame(5));
   const fs::path here = fs::path(__FILE__).parent_path();
   const fs::path document = here.parent_path().parent_path() / "schemas" / "checkpoint.md";

@@ -42,7 +42,7 @@ TEST(Inspect, TellsWhatACheckpointHolds) {
 
 TEST(Inspect, TellsWhatSeriesAndFramesHold) {
   const TemporaryFolder folder;
-  write_series(folder / "series.h5", make_series_list());
+  write_series(folder / "series.h5", make_samples());
   write_frame(folder / "frame.h5", make_test_frame(5));
   EXPECT_TRUE(mentions(inspect_file(folder / "series.h5"), "sluice-series"));
   EXPECT_TRUE(mentions(inspect_file(folder / "series.h5"), "(1 not a number)"));

@@ -33,26 +33,31 @@ std::vector<double> finite_doubles(std::size_t count) {
   return *rc::gen::container<std::vector<double>>(count, finite_double());
 }
 
-Series any_series() {
-  Series series;
-  series.name = *text();
-  series.kind = *text();
+/// Of sensors from place `first` on.
+SampleTable any_table(std::uint64_t first) {
+  SampleTable table;
+  table.kind = *text();
   for (std::size_t i = *rc::gen::inRange<std::size_t>(0, 4); i > 0; --i) {
-    series.columns.push_back({*text(), *text()});
+    table.columns.push_back({*text(), *text()});
+  }
+  const std::size_t sensors = *rc::gen::inRange<std::size_t>(1, 4);
+  for (std::size_t i = 0; i < sensors; ++i) {
+    table.names.push_back(*text());
+    table.places.push_back(first + i);
   }
   const std::size_t count = *rc::gen::inRange<std::size_t>(0, 20);
   for (std::size_t i = 0; i < count; ++i) {
-    series.time.push_back(0.5 * static_cast<double>(i));
+    table.time.push_back(0.5 * static_cast<double>(i));
   }
-  series.duration = finite_doubles(count);
-  series.values = finite_doubles(count * series.columns.size());
-  series.weight = finite_doubles(count);
-  series.next_index = *rc::gen::arbitrary<std::uint64_t>();
-  if (!series.values.empty()) {
-    series.values[0] = std::numeric_limits<double>::quiet_NaN();
-    series.weight[0] = 0.0;
+  table.duration = finite_doubles(count);
+  table.values = finite_doubles(count * table.width());
+  table.weight = finite_doubles(count * sensors);
+  table.next_index = *rc::gen::arbitrary<std::uint64_t>();
+  if (!table.values.empty()) {
+    table.values[0] = std::numeric_limits<double>::quiet_NaN();
+    table.weight[0] = 0.0;
   }
-  return series;
+  return table;
 }
 
 RC_GTEST_PROP(Hdf5File, AnyBitPatternComesBack, ()) {
@@ -90,9 +95,11 @@ RC_GTEST_PROP(CheckpointFile, AnySoundContentComesBack, ()) {
     }
   }
   checkpoint.solver.retired.resize(*rc::gen::inRange<std::size_t>(0, 5), {1.0});
-  checkpoint.series.clear();
+  checkpoint.samples.clear();
+  std::uint64_t sensors = 0;
   for (std::size_t i = *rc::gen::inRange<std::size_t>(0, 4); i > 0; --i) {
-    checkpoint.series.push_back(any_series());
+    checkpoint.samples.push_back(any_table(sensors));
+    sensors += checkpoint.samples.back().sensors();
   }
   RC_ASSERT(same_bits(decode_checkpoint(encode_checkpoint(checkpoint)), checkpoint));
 }

@@ -39,10 +39,12 @@ with h5py.File(folder / "checkpoint-000000000123.h5") as file:
     assert file["particles/x"].fletcher32
     assert math.copysign(1.0, file["particles/x"][0]) == -1.0 and file["particles/x"][0] == 0.0
     assert list(file["retired/cause"]) == [0, 1]
-    assert file["series/0002"].attrs["name"] == "späte Ankunft / 1"
+    assert list(file["series/0000"].attrs["names"]) == ["P1", "P2"]
+    assert list(file["series/0002"].attrs["names"]) == ["späte Ankunft / 1"]
     assert list(file["series/0001"].attrs["columns"]) == ["kinetic", "potential", "internal"]
-    assert file["series/0001/values"].shape == (2, 3)
-    assert numpy.isnan(file["series/0000/values"][0, 0])
+    assert file["series/0000/values"].shape == (3, 2, 1)
+    assert file["series/0001/values"].shape == (2, 1, 3)
+    assert numpy.isnan(file["series/0000/values"][0, 0, 0])
 
 with h5py.File(folder / "frame.h5") as file:
     assert file["particles/pressure"].dtype == numpy.float32
@@ -54,4 +56,4 @@ for example in examples:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(example, str(document), "exec"), {"__name__": "__main__"})
-    assert "P1 pressure 3 samples" in printed.getvalue(), printed.getvalue()
+    assert "P2 pressure 3 samples, last [9.] ['Pa']" in printed.getvalue(), printed.getvalue()
