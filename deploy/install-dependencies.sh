@@ -17,6 +17,7 @@ build_packages=(
   libfmt-dev            # text
   libcli11-dev          # command line
   libxxhash-dev         # checksums of files
+  libssl-dev            # SHA-256 of results
   libhwy-dev            # SIMD with run-time dispatch
   libsqlite3-dev        # the service's job rows
   libpng-dev            # pictures in reports
@@ -26,7 +27,7 @@ build_packages=(
 )
 # The libraries that the build packages bring, by the names of Debian 12.
 runtime_packages=(
-  libhdf5-103-1 libfmt9 libxxhash0 libhwy1 libsqlite3-0 libpng16-16 libcpp-httplib0.11
+  libhdf5-103-1 libfmt9 libxxhash0 libssl3 libhwy1 libsqlite3-0 libpng16-16 libcpp-httplib0.11
 )
 test_packages=(
   libgtest-dev libgmock-dev

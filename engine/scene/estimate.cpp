@@ -13,11 +13,17 @@
 namespace sluice {
 namespace {
 
-// State, sorted copies, single-precision mirrors and sums of one particle, bytes.
-constexpr std::uint64_t kFluidBytes = 250;
+// The most memory at once, bytes (tests/bench/memory.py): what a run takes without particles;
+// state, pair arrays, sums and lists of one particle with its copy and image while a checkpoint is
+// written.
+constexpr std::uint64_t kProgramBytes = 28'000'000;
+constexpr std::uint64_t kFluidBytesMixed = 390;
+constexpr std::uint64_t kFluidBytesDouble = 470;
 constexpr std::uint64_t kWallBytes = 100;
-// time, duration, value and weight of one sample, bytes.
+// time, duration, value and weight of one sample, bytes; the same three times while they are
+// written.
 constexpr std::uint64_t kSampleBytes = 32;
+constexpr std::uint64_t kSampleCopies = 3;
 // Position, velocity, density and id of one particle in a snapshot, bytes.
 constexpr std::uint64_t kFrameBytes = 48;
 constexpr std::uint64_t kCheckpoints = 3;
@@ -42,8 +48,10 @@ Estimate estimate(const Scene& scene) {
   e.steps = whole(scene.end_time / e.time_step);
   e.samples = whole(count_samples(scene));
   e.frames = whole(count_frames(scene));
-  e.memory_bytes =
-      e.fluid_particles * kFluidBytes + e.wall_particles * kWallBytes + e.samples * kSampleBytes;
+  const bool mixed = scene.method.precision == Precision::mixed;
+  e.memory_bytes = kProgramBytes +
+                   e.fluid_particles * (mixed ? kFluidBytesMixed : kFluidBytesDouble) +
+                   e.wall_particles * kWallBytes + e.samples * kSampleBytes * kSampleCopies;
   e.disk_bytes =
       kCheckpoints * (e.fluid_particles * checkpoint_bytes_per_particle(scene.method.integrator) +
                       e.samples * kSampleBytes) +

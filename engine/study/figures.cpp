@@ -238,6 +238,7 @@ std::vector<Chart> report_charts(const Report& report, const std::vector<Series>
     }
   }
   for (const Series& one : series) {
+    if (charts.size() >= kMostCharts) break;
     if (one.size() < 2 || one.columns.empty() || drawn.contains(one.name)) continue;
     charts.push_back(plain_chart(one, report.tau, charts.size()));
   }

@@ -8,9 +8,13 @@
 
 namespace sluice {
 
-/// The plots of a report. Against an experiment those of the paper's figures 5 to 13: front,
-/// levels, pressures, each simulation over experiment. Against curves of the scene one per curve.
-/// Then every other sensor by itself: its first column, or all of them for energies.
+/// A page with more plots is for no reader, and drawing a thousand takes longer than some runs.
+inline constexpr std::size_t kMostCharts = 64;
+
+/// The plots of a report, kMostCharts at most but for those with a reference. Against an experiment
+/// those of the paper's figures 5 to 13: front, levels, pressures, each simulation over experiment.
+/// Against curves of the scene one per curve. Then every other sensor by itself: its first column,
+/// or all of them for energies.
 [[nodiscard]] std::vector<Chart> report_charts(const Report& report,
                                                const std::vector<Series>& series);
 

@@ -59,7 +59,14 @@ std::string charts_html(const std::vector<Chart>& charts) {
   for (const Chart& chart : charts) {
     text += fmt::format("<figure>\n{}</figure>\n", chart_svg(chart, SvgPlace::page));
   }
-  return text + "</div>\n";
+  text += "</div>\n";
+  if (charts.size() >= kMostCharts) {
+    text += fmt::format(
+        "<p class=\"note\">a page has {} plots at most; sluice sensors prints any sensor's "
+        "samples</p>\n",
+        kMostCharts);
+  }
+  return text;
 }
 
 std::string pictures_html(const std::vector<std::string>& svgs) {

@@ -1,12 +1,14 @@
 """Speed and memory of whole runs, everything included, as one table.
 
 Usage: speed.py SLUICE SCENES [--particles N,N...] [--threads N,N+N...] [--seconds S]
-                [--repeat R] [--simd TARGET]
+                [--repeat R] [--simd TARGET] [--precision P,P...] [--scheme NAME]
 
 For each scene (the paper's and the recommended scheme), each number of particles, precision and
 number of threads: million fluid-particle steps per second, the median of R runs taken in turns
 (machines are noisy: compare lines of one table only), bytes per particle, and the share of each
-pass. A run starts as the scene does and is stopped after about S seconds of a core's work.
+pass. A run starts as the scene does and is stopped after about S seconds of a core's work: the same
+step for any number of threads, for the flow decides how often lists are made. (In the first part of
+a dam break, that is; whole cases: run.sh case.)
 Threads 1+1 are two runs side by side, their speeds added: what the machine's cores can do together,
 and so the most that two threads of one run could reach.
 """
@@ -61,7 +63,7 @@ def resized(scene, particles):
 def run(program, scene, threads, seconds, simd):
     length, height = scene["fluid"][0]["size"]
     particles = length * height / scene["resolution"]["spacing"] ** 2
-    steps = max(40, round(seconds * ROUGH_RATE * threads / particles))
+    steps = max(40, round(seconds * ROUGH_RATE / particles))
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.json")
         job = os.path.join(folder, "job")
@@ -95,14 +97,17 @@ def main():
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--simd", default="")
+    parser.add_argument("--precision", type=lambda text: text.split(","),
+                        default=["mixed", "double"])
+    parser.add_argument("--scheme", type=lambda text: [text + ".json"], default=SCENES)
     options = parser.parse_args()
 
     cases = []
-    for name in SCENES:
+    for name in options.scheme:
         with open(os.path.join(options.scenes, name), encoding="utf-8") as stream:
             scene = json.load(stream)
         for particles in options.particles:
-            for precision in ("mixed", "double"):
+            for precision in options.precision:
                 sized = resized(scene, particles)
                 sized["numerics"]["precision"] = precision
                 for threads in options.threads:

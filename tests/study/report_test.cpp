@@ -1,4 +1,5 @@
 #include "engine/study/report.hpp"
+#include "engine/study/figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,6 +40,20 @@ TEST(Report, SummarisesASensorByItsFirstWetItsHighestAndItsLastSample) {
   EXPECT_DOUBLE_EQ(*sensor.highest, 2.0);
   EXPECT_DOUBLE_EQ(*sensor.highest_at, 2.0);
   EXPECT_DOUBLE_EQ(*sensor.last, 1.0);
+}
+
+TEST(Report, HasAPageWithABoundedNumberOfPlots) {
+  std::vector<Series> many;
+  for (std::size_t i = 0; i < 100; ++i) {
+    many.push_back(probe());
+    many.back().name = "probe " + std::to_string(i);
+  }
+  const Report report = make_report(scene_of_no_experiment(), many, nullptr);
+  EXPECT_EQ(report_charts(report, many).size(), kMostCharts);
+  const std::string page = report_html(report, many, {});
+  EXPECT_NE(page.find("plots at most"), std::string::npos);
+  EXPECT_NE(page.find("probe 99"), std::string::npos) << "the table lists every sensor";
+  EXPECT_EQ(report_html(report, {probe()}, {}).find("plots at most"), std::string::npos);
 }
 
 TEST(Report, OfASensorThatStayedDryHasNoValuesRatherThanZeros) {
