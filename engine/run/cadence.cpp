@@ -10,7 +10,7 @@ double checkpoint_interval(double cost) {
   return std::max({2.0, 20.0 * cost, std::min(ideal, 60.0)});
 }
 
-double series_interval(double cost) { return std::max(1.0, 100.0 * cost); }
+double series_interval(double cost) { return std::max(1.0, 200.0 * cost); }
 
 void Backoff::failed(double now) {
   if (failures_ == 0) first_failure_ = now;

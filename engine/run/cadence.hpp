@@ -13,7 +13,7 @@ inline constexpr double kMeanTimeBetweenFailures = 3600.0;
 [[nodiscard]] double checkpoint_interval(double cost);
 
 /// Seconds between two publications of the series that cost `cost` seconds: a second, or more to
-/// keep to 1 % of the time.
+/// keep to half a percent of the time.
 [[nodiscard]] double series_interval(double cost);
 
 /// When to try again after a failed write: 0.5, 1, 2, ... 8 s, until `patience` seconds have passed

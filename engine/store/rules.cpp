@@ -65,17 +65,16 @@ std::string describe(const SampleTable& table) {
 }
 
 void require_values(const Rules& rules, const SampleTable& table) {
-  const std::size_t columns = table.columns.size();
-  for (std::size_t i = 0; i < table.values.size(); ++i) {
-    const double value = table.values[i];
-    const double weight = table.weight[i / columns];
-    const bool dry = std::isnan(value) && weight == 0.0;
-    if (!std::isfinite(value) && !dry) {
-      const std::size_t entry = i / columns;
+  const double* value = table.values.data();
+  for (std::size_t entry = 0; entry < table.weight.size(); ++entry) {
+    const double weight = table.weight[entry];
+    for (std::size_t column = 0; column < table.columns.size(); ++column, ++value) {
+      const bool dry = std::isnan(*value) && weight == 0.0;
+      if (std::isfinite(*value) || dry) continue;
       rules.refuse(fmt::format(
-          "series '{}': value of sample {} is {} with weight {}; only a dry one, of "
-          "weight 0, may be no number",
-          table.names[entry % table.sensors()], entry / table.sensors(), value, weight));
+          "series '{}': value of sample {} is {} with weight {}; only a dry one, of weight 0, may "
+          "be no number",
+          table.names[entry % table.sensors()], entry / table.sensors(), *value, weight));
     }
   }
 }

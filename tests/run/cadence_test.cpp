@@ -24,9 +24,9 @@ TEST(CheckpointInterval, SpendsAtMostAFivePercentShareWhateverTheCost) {
   }
 }
 
-TEST(SeriesInterval, IsASecondOrAHundredTimesTheCost) {
+TEST(SeriesInterval, IsASecondOrTwoHundredTimesTheCost) {
   EXPECT_EQ(series_interval(0.001), 1.0);
-  EXPECT_DOUBLE_EQ(series_interval(0.2), 20.0);
+  EXPECT_DOUBLE_EQ(series_interval(0.2), 40.0);
 }
 
 TEST(Backoff, DoublesTheWaitUpToEightSeconds) {
