@@ -35,16 +35,59 @@ void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
                                  checkpoint.solver.step, checkpoint.scene_hash, hash));
 }
 
-/// Samples cannot be matched to sensors by chance: names, places and columns must agree.
-void require_same_sensors(const std::vector<SampleTable>& expected,
-                          const std::vector<SampleTable>& found) {
-  const auto matches = [](const SampleTable& a, const SampleTable& b) {
-    return a.names == b.names && a.places == b.places && a.kind == b.kind &&
-           a.columns.size() == b.columns.size();
-  };
-  if (std::equal(expected.begin(), expected.end(), found.begin(), found.end(), matches)) return;
+bool same_sensors(const SampleTable& a, const SampleTable& b) {
+  return a.names == b.names && a.places == b.places && a.kind == b.kind &&
+         a.columns.size() == b.columns.size();
+}
+
+[[noreturn]] void refuse_samples() {
   throw StorageError(StorageFault::corrupt,
                      "the checkpoint's series are not those of the scene's sensors");
+}
+
+/// Fills a table with the series of its sensors. Samples cannot be matched to sensors by chance:
+/// names, columns and times must agree.
+void fill(SampleTable& table, const std::vector<Series>& series) {
+  std::vector<const Series*> sensors;
+  for (std::size_t i = 0; i < table.sensors(); ++i) {
+    const auto place = static_cast<std::size_t>(table.places[i]);
+    const Series* const one = place < series.size() ? &series[place] : nullptr;
+    if (one == nullptr || one->name != table.names[i] || one->kind != table.kind ||
+        one->columns.size() != table.columns.size() ||
+        (i > 0 && (one->time != sensors[0]->time || one->next_index != sensors[0]->next_index))) {
+      refuse_samples();
+    }
+    sensors.push_back(one);
+  }
+  table.time = sensors[0]->time;
+  table.duration = sensors[0]->duration;
+  table.next_index = sensors[0]->next_index;
+  const auto columns = static_cast<std::ptrdiff_t>(table.columns.size());
+  for (std::size_t n = 0; n < table.size(); ++n) {
+    for (const Series* const one : sensors) {
+      const auto values = one->values.begin() + static_cast<std::ptrdiff_t>(n) * columns;
+      table.values.insert(table.values.end(), values, values + columns);
+      table.weight.push_back(one->weight[n]);
+    }
+  }
+}
+
+/// The samples of a checkpoint in the tables of the scene's sensors. Earlier builds kept each
+/// sensor by itself.
+std::vector<SampleTable> in_tables(const std::vector<SampleTable>& empty,
+                                   std::vector<SampleTable> found) {
+  if (std::equal(empty.begin(), empty.end(), found.begin(), found.end(), same_sensors)) {
+    return found;
+  }
+  const std::vector<Series> series = split(found);
+  std::vector<SampleTable> tables = empty;
+  std::size_t sensors = 0;
+  for (SampleTable& table : tables) {
+    fill(table, series);
+    sensors += table.sensors();
+  }
+  if (sensors != series.size()) refuse_samples();
+  return tables;
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -78,7 +121,7 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
       baselines_(checkpoint.guards),
       next_frame_(checkpoint.next_frame) {
   require_same_scene(scene_hash_, checkpoint);
-  require_same_sensors(sensors_.empty_tables(), samples_);
+  samples_ = in_tables(sensors_.empty_tables(), std::move(samples_));
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();
   count_retired();

@@ -15,7 +15,7 @@ namespace sluice {
 namespace {
 
 constexpr double kMaxSteps = 1e9;
-constexpr double kMaxSamples = 2e7;  // all sensors; 640 MB
+constexpr double kMaxSamples = 2e7;  // all sensors; 2 GB of memory at most
 constexpr double kMaxFrames = 1e5;
 // Below this the fluid's own weight compresses it by a quarter.
 constexpr double kMinSoundRatio = 2.0;

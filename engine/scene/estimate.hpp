@@ -15,7 +15,7 @@ struct Estimate {
   std::uint64_t steps = 0;            ///< end_time / time_step
   std::uint64_t samples = 0;          ///< of all sensors together
   std::uint64_t frames = 0;           ///< snapshots
-  std::uint64_t memory_bytes = 0;     ///< of the run: 250 a fluid particle, 100 a dummy particle
+  std::uint64_t memory_bytes = 0;     ///< the most at once, the program's own 28 MB included
   std::uint64_t disk_bytes = 0;       ///< three checkpoints, the series and the frames
 };
 

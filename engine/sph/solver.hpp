@@ -87,7 +87,8 @@ class Solver {
   [[nodiscard]] double suspect_id(Suspect suspect) const;
 
   /// Calls body(i) for each i in [0, count) on the solver's threads, for sensors: `body` may ask
-  /// for anything of the point probes below, and neither throws nor asks for the energy.
+  /// for anything of the point probes below. It must not throw, for an exception ends the process,
+  /// nor ask for the energy, which takes the threads itself.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body) const;
 
   /// Energy now. Summed in the order of particles in memory.

@@ -16,9 +16,9 @@ constexpr std::string_view kPrefix = "checkpoint-";
 constexpr std::string_view kSuffix = ".h5";
 constexpr std::size_t kDigits = 12;
 
-/// Of the numbers in the image.
+/// About the size of the image.
 std::uint64_t expected_bytes(const Checkpoint& checkpoint) {
-  std::uint64_t bytes = number_bytes(checkpoint.samples);
+  std::uint64_t bytes = file_bytes(checkpoint.samples);
   for (const Field& field : kFields) {
     bytes += (checkpoint.solver.particles.*field.member).size() * sizeof(double);
   }
@@ -70,10 +70,10 @@ Bytes encode_checkpoint(const Checkpoint& checkpoint) {
 Checkpoint decode_checkpoint(ByteSpan image, const Expectation& expectation) {
   ReadArchive archive(image);
   Checkpoint checkpoint;
-  walk_format(archive, kCheckpointFormat);
+  const std::uint64_t version = walk_format(archive, kCheckpointFormat);
   walk_identity(archive, checkpoint);
   require_expected(checkpoint, expectation);
-  walk_physics(archive, checkpoint);
+  walk_physics(archive, checkpoint, sample_layout(kCheckpointFormat, version));
   archive.require_all_met();
   require_sound(checkpoint, StorageFault::corrupt);
   return checkpoint;

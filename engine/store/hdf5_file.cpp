@@ -23,7 +23,7 @@ namespace {
 
 /// 512 KiB of doubles: fits HDF5's chunk cache of 1 MiB, so that a chunk is written once.
 constexpr std::uint64_t kLargestChunk = 65536;
-/// What a file has beside its numbers, bytes: an image of the expected size is made in one piece.
+/// Beside the expected size of an image, bytes, so that it is made in one piece.
 constexpr std::uint64_t kRoom = std::uint64_t{1} << 20;
 
 /// An HDF5 identifier with the function that gives it back.

@@ -35,7 +35,7 @@ struct DataSetInfo {
 /// a NUL or that is no UTF-8, io for anything that HDF5 refuses. For one thread at a time.
 class Hdf5Writer {
  public:
-  /// `expected_bytes`, of all numbers, sizes the image.
+  /// `expected_bytes` sizes the image: one that is not much larger is made in one piece.
   explicit Hdf5Writer(std::uint64_t expected_bytes = 0);
   ~Hdf5Writer();
   Hdf5Writer(Hdf5Writer&&) noexcept;

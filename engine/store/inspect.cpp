@@ -231,7 +231,9 @@ void add_series(std::string& text, const Json& list) {
         series.contains("from")
             ? fmt::format("{} s ... {} s", series["from"].dump(), series["to"].dump())
             : "empty";
-    for (const Json& name : series.value("names", Json::array())) {
+    // The first versions had a group for each sensor.
+    const Json one = Json::array({series.value("name", Json("?"))});
+    for (const Json& name : series.value("names", one)) {
       text += fmt::format("  {:<20} {:<16} {} samples, {}\n", plain(name),
                           plain(series.value("kind", Json("?"))),
                           series.value("count", Json(0)).dump(), span);

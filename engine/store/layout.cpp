@@ -174,6 +174,38 @@ void sample_tables(Archive& archive, Subject& tables) {
   }
 }
 
+/// As the first versions kept them: a table for each sensor.
+void samples_by_sensor(ReadArchive& archive, std::vector<SampleTable>& tables) {
+  archive.group("/series");
+  archive.count("/series", "count", tables);
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    SampleTable& table = tables[i];
+    const std::string path = table_path(i);
+    archive.group(path);
+    table.names.resize(1);
+    table.places = {i};
+    archive.attribute(path, "name", table.names.front());
+    archive.attribute(path, "kind", table.kind);
+    columns(archive, path, table.columns);
+    archive.attribute(path, "next_index", table.next_index);
+    archive.count(path, "count", table.time);
+    const std::uint64_t samples = table.size();
+    archive.data_set(path + "/time", table.time, {samples}, {"s", {}});
+    archive.data_set(path + "/duration", table.duration, {samples}, {"s", {}});
+    archive.data_set(path + "/values", table.values, {samples, table.columns.size()},
+                     {joined_units(table.columns), {}});
+    archive.data_set(path + "/weight", table.weight, {samples}, {"1", {}});
+  }
+}
+
+template <class Archive, class Subject>
+void samples(Archive& archive, Subject& tables, SampleLayout layout) {
+  if constexpr (Archive::kReads) {
+    if (layout == SampleLayout::by_sensor) return samples_by_sensor(archive, tables);
+  }
+  sample_tables(archive, tables);
+}
+
 template <class Archive, class Subject>
 void guard_baselines(Archive& archive, Subject& guards) {
   archive.group("/guards");
@@ -183,14 +215,14 @@ void guard_baselines(Archive& archive, Subject& guards) {
 }
 
 template <class Archive, class Subject>
-void physics(Archive& archive, Subject& checkpoint) {
+void physics(Archive& archive, Subject& checkpoint, SampleLayout layout = SampleLayout::tables) {
   archive.attribute("/", "step", checkpoint.solver.step);
   archive.attribute("/", "time", checkpoint.solver.time);
   archive.attribute("/", "time_step", checkpoint.solver.time_step);
   archive.attribute("/", "next_frame", checkpoint.next_frame);
   particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
   retired_particles(archive, checkpoint.solver.retired);
-  sample_tables(archive, checkpoint.samples);
+  samples(archive, checkpoint.samples, layout);
   guard_baselines(archive, checkpoint.guards);
 }
 
@@ -227,7 +259,7 @@ void walk_format(WriteArchive& archive, const Format& format) {
   archive.attribute("/", "version", format.version);
 }
 
-void walk_format(ReadArchive& archive, const Format& format) {
+std::uint64_t walk_format(ReadArchive& archive, const Format& format) {
   std::string name;
   std::uint64_t version = 0;
   archive.attribute("/", "format", name);
@@ -236,12 +268,13 @@ void walk_format(ReadArchive& archive, const Format& format) {
     throw StorageError(StorageFault::not_ours,
                        fmt::format("the format is '{}' where '{}' is expected", name, format.name));
   }
-  if (version != format.version) {
+  if (version < format.oldest || version > format.version) {
     throw StorageError(StorageFault::unsupported_version,
-                       fmt::format("version {} of the format {}, this program knows version {}; "
-                                   "use the program that wrote it",
-                                   version, name, format.version));
+                       fmt::format("version {} of the format {}, this program knows {} to {}; use "
+                                   "the program that wrote it",
+                                   version, name, format.oldest, format.version));
   }
+  return version;
 }
 
 void walk_identity(WriteArchive& archive, const Checkpoint& checkpoint) {
@@ -252,7 +285,9 @@ void walk_identity(ReadArchive& archive, Checkpoint& checkpoint) { identity(arch
 void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint) {
   physics(archive, checkpoint);
 }
-void walk_physics(ReadArchive& archive, Checkpoint& checkpoint) { physics(archive, checkpoint); }
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, SampleLayout layout) {
+  physics(archive, checkpoint, layout);
+}
 void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint) {
   physics(archive, checkpoint);
 }
@@ -260,8 +295,8 @@ void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint) {
 void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables) {
   sample_tables(archive, tables);
 }
-void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables) {
-  sample_tables(archive, tables);
+void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables, SampleLayout layout) {
+  samples(archive, tables, layout);
 }
 void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables) {
   sample_tables(archive, tables);

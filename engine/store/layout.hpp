@@ -17,27 +17,34 @@ namespace sluice {
 /// Name and version of a file's layout: the root's first two attributes.
 struct Format {
   std::string_view name;
-  std::uint64_t version;
+  std::uint64_t version;  ///< that is written
+  std::uint64_t oldest;   ///< that is still read
 };
-inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 4};
-inline constexpr Format kSeriesFormat{"sluice-series", 2};
-inline constexpr Format kFrameFormat{"sluice-frame", 1};
+inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 4, 3};
+inline constexpr Format kSeriesFormat{"sluice-series", 2, 1};
+inline constexpr Format kFrameFormat{"sluice-frame", 1, 1};
 
-/// Writes the format, or throws StorageError: not_ours or unsupported_version when the file's is
-/// another.
+/// How a file keeps the samples: the first versions had a group for each sensor.
+enum class SampleLayout { by_sensor, tables };
+[[nodiscard]] inline SampleLayout sample_layout(const Format& format, std::uint64_t version) {
+  return version == format.version ? SampleLayout::tables : SampleLayout::by_sensor;
+}
+
+/// Writes the format; or returns the file's version, and throws StorageError: not_ours or
+/// unsupported_version when it is none that is read.
 void walk_format(WriteArchive& archive, const Format& format);
-void walk_format(ReadArchive& archive, const Format& format);
+std::uint64_t walk_format(ReadArchive& archive, const Format& format);
 
 void walk_identity(WriteArchive& archive, const Checkpoint& checkpoint);
 void walk_identity(ReadArchive& archive, Checkpoint& checkpoint);
 
 /// All that the digest covers.
 void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint);
-void walk_physics(ReadArchive& archive, Checkpoint& checkpoint);
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, SampleLayout layout);
 void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint);
 
 void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables);
-void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables);
+void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables, SampleLayout layout);
 void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables);
 
 void walk_frame(WriteArchive& archive, const Frame& frame);

@@ -20,12 +20,13 @@ Series series_of(const SampleTable& table, std::size_t sensor) {
 
 }  // namespace
 
-std::uint64_t number_bytes(const std::vector<SampleTable>& tables) {
+std::uint64_t file_bytes(const std::vector<SampleTable>& tables) {
+  constexpr std::uint64_t kLabels = 4096;  // groups, names, units and descriptions of a table
   std::uint64_t numbers = 0;
   for (const SampleTable& table : tables) {
     numbers += table.size() * (2 + table.sensors() + table.width());
   }
-  return numbers * sizeof(double);
+  return numbers * sizeof(double) + kLabels * tables.size();
 }
 
 SampleTable table_of(const Series& series) {

@@ -26,8 +26,8 @@ struct SampleTable {
   [[nodiscard]] std::size_t width() const { return names.size() * columns.size(); }
 };
 
-/// What the numbers of the samples take in memory, bytes.
-[[nodiscard]] std::uint64_t number_bytes(const std::vector<SampleTable>& tables);
+/// About what the tables take in a file, bytes.
+[[nodiscard]] std::uint64_t file_bytes(const std::vector<SampleTable>& tables);
 
 /// A sensor's series as a table of its own, at place 0.
 [[nodiscard]] SampleTable table_of(const Series& series);

@@ -9,7 +9,7 @@ namespace {
 
 Bytes encode(const std::vector<SampleTable>& tables) {
   require_sound(tables, StorageFault::invalid_content);
-  WriteArchive archive(number_bytes(tables));
+  WriteArchive archive(file_bytes(tables));
   walk_format(archive, kSeriesFormat);
   walk_samples(archive, tables);
   return archive.image();
@@ -18,8 +18,8 @@ Bytes encode(const std::vector<SampleTable>& tables) {
 std::vector<SampleTable> decode(ByteSpan image) {
   ReadArchive archive(image);
   std::vector<SampleTable> tables;
-  walk_format(archive, kSeriesFormat);
-  walk_samples(archive, tables);
+  const std::uint64_t version = walk_format(archive, kSeriesFormat);
+  walk_samples(archive, tables, sample_layout(kSeriesFormat, version));
   archive.require_all_met();
   require_sound(tables, StorageFault::corrupt);
   return tables;

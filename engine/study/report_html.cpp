@@ -53,14 +53,14 @@ std::string head(const Report& report) {
   return text;
 }
 
-std::string charts_html(const std::vector<Chart>& charts) {
+std::string charts_html(const std::vector<Chart>& charts, std::size_t sensors) {
   if (charts.empty()) return {};
   std::string text = "<h2>Figures</h2>\n<div class=\"charts\">\n";
   for (const Chart& chart : charts) {
     text += fmt::format("<figure>\n{}</figure>\n", chart_svg(chart, SvgPlace::page));
   }
   text += "</div>\n";
-  if (charts.size() >= kMostCharts) {
+  if (charts.size() >= kMostCharts && sensors > charts.size()) {
     text += fmt::format(
         "<p class=\"note\">a page has {} plots at most; sluice sensors prints any sensor's "
         "samples</p>\n",
@@ -85,7 +85,7 @@ std::string report_html(const Report& report, const std::vector<Series>& series,
                         const std::vector<Frame>& frames) {
   std::string text = head(report);
   for (const Table& table : evidence_tables(report)) text += table_html(table);
-  text += charts_html(report_charts(report, series));
+  text += charts_html(report_charts(report, series), series.size());
   text += pictures_html(picture_svgs(report, frames));
   for (const Table& table : run_tables(report)) text += table_html(table);
   return text + "</body>\n</html>\n";

@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/run/simulation.hpp"
+#include "engine/store/checkpoint_io.hpp"
 #include "engine/store/digest.hpp"
+#include "engine/store/errors.hpp"
 #include "tests/run/scenes.hpp"
 
 namespace sluice {
@@ -172,6 +175,27 @@ TEST(SensorArray, SamplesManySensorsToTheSameBitsWithAnyNumberOfThreads) {
   for (const int threads : {2, 3, 8}) {
     EXPECT_EQ(physics_digest(run(threads).checkpoint()), digest) << threads;
   }
+  Simulation interrupted(scene, {2, ""});
+  while (interrupted.solver().step_count() < 17) interrupted.step();
+  Simulation resumed(scene, {3, ""},
+                     decode_checkpoint(encode_checkpoint(interrupted.checkpoint())));
+  while (resumed.solver().step_count() < 40) resumed.step();
+  EXPECT_EQ(physics_digest(resumed.checkpoint()), digest);
+  // As earlier builds left it: each sensor by itself.
+  Checkpoint by_sensor = interrupted.checkpoint();
+  const std::vector<Series> so_far = split(by_sensor.samples);
+  by_sensor.samples.clear();
+  for (std::size_t i = 0; i < so_far.size(); ++i) {
+    by_sensor.samples.push_back(table_of(so_far[i]));
+    by_sensor.samples.back().places = {i};
+  }
+  Checkpoint swapped = by_sensor;
+  std::swap(swapped.samples[1].names, swapped.samples[2].names);
+  EXPECT_THROW(Simulation(scene, {1, ""}, swapped), StorageError);
+  Simulation gone_on(scene, {1, ""}, by_sensor);
+  while (gone_on.solver().step_count() < 40) gone_on.step();
+  EXPECT_EQ(physics_digest(gone_on.checkpoint()), digest);
+
   for (std::size_t i = 0; i < series.size(); ++i) {
     const Sample alone = sample(scene, scene.sensors[i], one.solver());
     ASSERT_EQ(series[i].size(), 41U);

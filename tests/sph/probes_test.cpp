@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "engine/sph/simd_target.hpp"
 #include "tests/sph/plain_sums.hpp"
 #include "tests/sph/test_fluids.hpp"
 
@@ -59,29 +61,35 @@ TEST(PressureProbe, IsDryWithoutNeighboursWhateverItsSmoothingLength) {
 }
 
 TEST(PressureProbe, EqualsTheSumOverAllParticlesWhileTheyMove) {
-  Dice dice(71);
-  Method m = plain_method();
-  const Fluid start = random_block(dice, {-1.0, -1.0}, 20, 16, kDx, 0.2, 4.0, 10.0);
-  Solver solver(m, start_from(start), {}, {});
-  for (int n = 0; n < 25; ++n) {
-    solver.step();
-    const Fluid fluid = fluid_of(solver.state());
-    for (int k = 0; k < 20; ++k) {
-      const Vec point = dice.in_box({-1.3, -1.3}, {1.3, 1.0});
-      Method at = m;
-      at.smoothing_length = dice.between(0.02, 0.3);
-      double weighted = 0.0;
-      double plain = 0.0;
-      double filled = 0.0;
-      for (std::size_t i = 0; i < fluid.size(); ++i) {
-        const double w = smoothing(at, (fluid.x[i] - point).norm());
-        weighted += kCSquared * fluid.excess[i] * w;
-        plain += w;
-        filled += w * 10.0 / (1000.0 + fluid.excess[i]);
+  for (const KernelKind kernel : kKernels) {
+    for (const std::string& target : simd_targets()) {
+      SCOPED_TRACE(target);
+      Dice dice(71);
+      Method m = plain_method();
+      m.kernel = kernel;
+      const Fluid start = random_block(dice, {-1.0, -1.0}, 20, 16, kDx, 0.2, 4.0, 10.0);
+      Solver solver(m, start_from(start), {}, {1, target});
+      for (int n = 0; n < 25; ++n) {
+        solver.step();
+        const Fluid fluid = fluid_of(solver.state());
+        for (int k = 0; k < 20; ++k) {
+          const Vec point = dice.in_box({-1.3, -1.3}, {1.3, 1.0});
+          Method at = m;
+          at.smoothing_length = dice.between(0.02, 0.3);
+          double weighted = 0.0;
+          double plain = 0.0;
+          double filled = 0.0;
+          for (std::size_t i = 0; i < fluid.size(); ++i) {
+            const double w = smoothing(at, (fluid.x[i] - point).norm());
+            weighted += kCSquared * fluid.excess[i] * w;
+            plain += w;
+            filled += w * 10.0 / (1000.0 + fluid.excess[i]);
+          }
+          const Probe probe = solver.pressure_at(point, at.smoothing_length);
+          ASSERT_NEAR(probe.weight, filled, 1e-12);
+          ASSERT_NEAR(probe.value, plain > 0.0 ? weighted / plain : 0.0, 1e-7) << "step " << n;
+        }
       }
-      const Probe probe = solver.pressure_at(point, at.smoothing_length);
-      ASSERT_NEAR(probe.weight, filled, 1e-12);
-      ASSERT_NEAR(probe.value, plain > 0.0 ? weighted / plain : 0.0, 1e-7) << "step " << n;
     }
   }
 }

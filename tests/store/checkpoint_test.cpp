@@ -14,6 +14,7 @@
 #include "engine/store/digest.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/hdf5_file.hpp"
+#include "engine/store/inspect.hpp"
 #include "engine/store/layout.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/store/series_file.hpp"
@@ -287,6 +288,69 @@ TEST(CheckpointLayout, RefusesOtherVersionsTypesUnitsShapesAndValues) {
     refuse(StorageFault::corrupt, changed(image, {.leave_out = {}, .alter = shorten}));
     refuse(StorageFault::corrupt, changed(image, {.leave_out = {}, .alter = spoil}));
   }
+}
+
+/// The same samples as the first versions kept them: a group for each sensor.
+void add_by_sensor(Hdf5Writer& writer, const std::vector<Series>& list) {
+  writer.create_group("/series");
+  writer.set_attribute("/series", "count", std::uint64_t{list.size()});
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Series& series = list[i];
+    const std::string path = "/series/000" + std::to_string(i);
+    std::vector<std::string> names;
+    std::vector<std::string> units;
+    std::string joined;
+    for (const Series::Column& column : series.columns) {
+      names.push_back(column.name);
+      units.push_back(column.unit);
+      joined += (joined.empty() ? "" : ", ") + column.unit;
+    }
+    writer.create_group(path);
+    writer.set_attribute(path, "name", series.name);
+    writer.set_attribute(path, "kind", series.kind);
+    writer.set_attribute(path, "columns", names);
+    writer.set_attribute(path, "units", units);
+    writer.set_attribute(path, "next_index", series.next_index);
+    writer.set_attribute(path, "count", std::uint64_t{series.size()});
+    const auto add = [&](const std::string& name, const std::vector<double>& values,
+                         const Shape& shape, const std::string& unit) {
+      writer.write(path + "/" + name, std::span(values), shape);
+      writer.set_attribute(path + "/" + name, "unit", unit);
+      writer.set_attribute(path + "/" + name, "description", std::string("as it was"));
+    };
+    add("time", series.time, {series.size()}, "s");
+    add("duration", series.duration, {series.size()}, "s");
+    add("values", series.values, {series.size(), names.size()}, joined);
+    add("weight", series.weight, {series.size()}, "1");
+  }
+}
+
+Bytes as_version(ByteSpan image, std::uint64_t version) {
+  return changed(image, {.leave_out = "/@version",
+                         .add = [&](Hdf5Writer& w) { w.set_attribute("/", "version", version); }});
+}
+
+TEST(CheckpointLayout, WithAGroupForEachSensorIsStillRead) {
+  const Checkpoint written = make_checkpoint(5);
+  const std::vector<Series> series = split(written.samples);
+  const Bytes old =
+      changed(as_version(encode_checkpoint(written), 3),
+              {.leave_out = "/series", .add = [&](Hdf5Writer& w) { add_by_sensor(w, series); }});
+  const Checkpoint read = decode_checkpoint(old);
+  EXPECT_EQ(read.samples.size(), series.size());
+  EXPECT_TRUE(same_bits(split(read.samples), series));
+  expect_fault(StorageFault::corrupt, [&] { (void)decode_checkpoint(as_version(old, 4)); });
+  expect_fault(StorageFault::unsupported_version,
+               [&] { (void)decode_checkpoint(as_version(old, 2)); });
+
+  const TemporaryFolder folder;
+  Hdf5Writer file;
+  file.set_attribute("/", "format", std::string("sluice-series"));
+  file.set_attribute("/", "version", std::uint64_t{1});
+  add_by_sensor(file, series);
+  publish(folder / "series.h5", file.image(), Durability::process_crash);
+  EXPECT_TRUE(same_bits(read_series(folder / "series.h5"), series));
+  EXPECT_NE(inspect(folder / "series.h5").find("P2 "), std::string::npos);
 }
 
 TEST(CheckpointLayout, IsDescribedWithEveryNameInItsDocument) {
