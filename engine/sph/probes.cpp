@@ -27,13 +27,17 @@ std::size_t first_from(const float* values, std::size_t begin, std::size_t end, 
 
 template <class Body>
 void FluidProbe::for_runs_in(const Box& box, const Body& body) const {
-  // The boxes hold their particles, in smoothing lengths; the slack covers single precision.
+  // The boxes hold their particles, in smoothing lengths; the slack covers single precision, far
+  // from the origin too.
   const double h = method_.smoothing_length;
-  const double slack = 1e-3;
-  const auto x_min = static_cast<float>(box.min.x() / h - slack);
-  const auto x_max = static_cast<float>(box.max.x() / h + slack);
-  const auto y_min = static_cast<float>(box.min.y() / h - slack);
-  const auto y_max = static_cast<float>(box.max.y() / h + slack);
+  const auto outwards = [h](double length, double towards) {
+    const double at = length / h;
+    return static_cast<float>(at + towards * (1e-3 + 4e-7 * std::abs(at)));
+  };
+  const float x_min = outwards(box.min.x(), -1.0);
+  const float x_max = outwards(box.max.x(), 1.0);
+  const float y_min = outwards(box.min.y(), -1.0);
+  const float y_max = outwards(box.max.y(), 1.0);
   for (std::size_t strip = bounds_.first_strip(y_min); strip + 1 < layout_.strip_begin.size();
        ++strip) {
     if (bounds_.strip_y_min_after[strip] > y_max) break;
