@@ -12,30 +12,19 @@ import json
 import os
 import re
 import subprocess
-import sys
 import tempfile
 
-from speed import SCENES, numbers, resized
+from speed import SCENES, measured, numbers, resized
 
 
-def planned(program, path):
+def planned(program, scene):
     """Bytes that the plan of a scene states."""
-    said = subprocess.run([program, "plan", path, "--json", "--no-calibration"], capture_output=True, text=True,
-                          check=True)
+    with tempfile.NamedTemporaryFile("w", suffix=".json", encoding="utf-8") as out:
+        json.dump(scene, out)
+        out.flush()
+        said = subprocess.run([program, "plan", out.name, "--json", "--no-calibration"],
+                              capture_output=True, text=True, check=True)
     return json.loads(said.stdout)["estimate"]["memory_bytes"]
-
-
-def resident(program, path, job, steps):
-    """Largest resident set of a run, bytes."""
-    command = [program, "run", path, "--folder", job, "--progress", "none", "--stop-after-step",
-               str(steps)]
-    with open(os.devnull, "w", encoding="utf-8") as nowhere:
-        child = subprocess.Popen(command, stdout=nowhere, stderr=nowhere)
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode not in (0, 85):
-        sys.exit(f"memory.py: {' '.join(command)} ended with {child.returncode}")
-    return 1024 * usage.ru_maxrss
 
 
 def main():
@@ -54,15 +43,13 @@ def main():
                 with open(os.path.join(arguments.scenes, name), encoding="utf-8") as stream:
                     scene = resized(json.load(stream), particles)
                 scene["numerics"]["precision"] = precision
-                with tempfile.TemporaryDirectory() as folder:
-                    path = os.path.join(folder, "scene.json")
-                    with open(path, "w", encoding="utf-8") as out:
-                        json.dump(scene, out)
-                    most = resident(arguments.sluice, path, os.path.join(folder, "job"),
-                                    arguments.steps)
-                    plan = planned(arguments.sluice, path)
+                _, usage = measured(arguments.sluice, scene,
+                                    ["--stop-after-step", str(arguments.steps)])
+                most = 1024 * usage.ru_maxrss
+                plan = planned(arguments.sluice, scene)
                 print(f"{re.sub('.json$', '', name):<16} {precision:<9} {particles:>9} "
-                      f"{most / 1e6:>7.0f} {most / particles:>10.0f} {most / plan:>8.2f}", flush=True)
+                      f"{most / 1e6:>7.0f} {most / particles:>10.0f} {most / plan:>8.2f}",
+                      flush=True)
 
 
 if __name__ == "__main__":

@@ -14,11 +14,8 @@ import argparse
 import json
 import os
 import statistics
-import subprocess
-import sys
-import tempfile
 
-from speed import PASSES
+from speed import PASSES, measured
 
 ENGINE = [name for name in PASSES if name != "sample"]
 
@@ -41,25 +38,12 @@ def scene_with(scenes, arguments, count):
 
 def run(arguments, scene):
     """Time beside the engine's passes over the time in them, and the shares of the account."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "scene.json")
-        job = os.path.join(folder, "job")
-        with open(path, "w", encoding="utf-8") as out:
-            json.dump(scene, out)
-        before = os.times()
-        ended = subprocess.run([arguments.sluice, "run", path, "--folder", job, "--threads",
-                                str(arguments.threads), "--progress", "none"],
-                               capture_output=True, text=True, check=False)
-        after = os.times()
-        if ended.returncode != 0:
-            sys.exit(f"sensors.py: the run ended with {ended.returncode}: {ended.stderr}")
-        with open(os.path.join(job, "outcome.json"), encoding="utf-8") as stream:
-            account = json.load(stream)["this_attempt"]
-        used = (after.children_user - before.children_user
-                + after.children_system - before.children_system)
-        shares = {line["name"]: line["share"] for line in account["passes"]}
-        engine = sum(line["seconds"] for line in account["passes"] if line["name"] in ENGINE)
-        return used / (arguments.threads * engine) - 1.0, shares
+    outcome, usage = measured(arguments.sluice, scene, ["--threads", str(arguments.threads)])
+    passes = outcome["this_attempt"]["passes"]
+    engine = sum(line["seconds"] for line in passes if line["name"] in ENGINE)
+    used = usage.ru_utime + usage.ru_stime
+    shares = {line["name"]: line["share"] for line in passes}
+    return used / (arguments.threads * engine) - 1.0, shares
 
 
 def main():
@@ -83,7 +67,8 @@ def main():
     cost = statistics.median(with_all) - statistics.median(without)
     print(f"{arguments.sensors} pressure sensors, a sample each {arguments.interval:g} s to "
           f"{arguments.end:g} s, {arguments.threads} thread(s), median of {arguments.repeat}")
-    print(f"  cost: {100 * cost:.1f} % (beside the engine {100 * statistics.median(with_all):.1f} % "
+    print(f"  cost: {100 * cost:.1f} % "
+          f"(beside the engine {100 * statistics.median(with_all):.1f} % "
           f"with and {100 * statistics.median(without):.1f} % without)")
     for name in ("sample", "checkpoints", "output"):
         part = statistics.median(share[name] for share in shares)

@@ -60,24 +60,31 @@ def resized(scene, particles):
     return scene
 
 
-def run(program, scene, threads, seconds, simd):
-    length, height = scene["fluid"][0]["size"]
-    particles = length * height / scene["resolution"]["spacing"] ** 2
-    steps = max(40, round(seconds * ROUGH_RATE / particles))
+def measured(program, scene, options):
+    """Runs a scene in a folder of its own: its outcome, and what the process used."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.json")
         job = os.path.join(folder, "job")
         with open(path, "w", encoding="utf-8") as out:
             json.dump(scene, out)
-        command = [program, "run", path, "--folder", job, "--threads", str(threads), "--progress",
-                   "none", "--no-checkpoint", "--stop-after-step", str(steps)]
-        if simd:
-            command += ["--simd", simd]
-        ended = subprocess.run(command, capture_output=True, text=True, check=False)
-        if ended.returncode not in (0, 85):
-            sys.exit(f"speed.py: {' '.join(command)} ended with {ended.returncode}: {ended.stderr}")
+        command = [program, "run", path, "--folder", job, "--progress", "none", *options]
+        with open(os.path.join(folder, "said"), "w+", encoding="utf-8") as said:
+            child = subprocess.Popen(command, stdout=said, stderr=said)
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+            if child.returncode not in (0, 85):
+                said.seek(0)
+                sys.exit(f"{' '.join(command)} ended with {child.returncode}: {said.read()}")
         with open(os.path.join(job, "outcome.json"), encoding="utf-8") as stream:
-            return json.load(stream)
+            return json.load(stream), usage
+
+
+def run(program, scene, threads, seconds, simd):
+    length, height = scene["fluid"][0]["size"]
+    particles = length * height / scene["resolution"]["spacing"] ** 2
+    steps = max(40, round(seconds * ROUGH_RATE / particles))
+    options = ["--threads", str(threads), "--no-checkpoint", "--stop-after-step", str(steps)]
+    return measured(program, scene, options + (["--simd", simd] if simd else []))[0]
 
 
 def speed_together(program, scene, threads, options):
