@@ -45,14 +45,13 @@ bool same_sensors(const SampleTable& a, const SampleTable& b) {
                      "the checkpoint's series are not those of the scene's sensors");
 }
 
-/// Fills a table with the series of its sensors. Samples cannot be matched to sensors by chance:
-/// names, columns and times must agree.
+/// Fills a table with those of all sensors' series that are its own. Samples cannot be matched to
+/// sensors by chance: names, columns and times must agree.
 void fill(SampleTable& table, const std::vector<Series>& series) {
   std::vector<const Series*> sensors;
   for (std::size_t i = 0; i < table.sensors(); ++i) {
-    const auto place = static_cast<std::size_t>(table.places[i]);
-    const Series* const one = place < series.size() ? &series[place] : nullptr;
-    if (one == nullptr || one->name != table.names[i] || one->kind != table.kind ||
+    const Series* const one = &series[static_cast<std::size_t>(table.places[i])];
+    if (one->name != table.names[i] || one->kind != table.kind ||
         one->columns.size() != table.columns.size() ||
         (i > 0 && (one->time != sensors[0]->time || one->next_index != sensors[0]->next_index))) {
       refuse_samples();
@@ -81,12 +80,8 @@ std::vector<SampleTable> in_tables(const std::vector<SampleTable>& empty,
   }
   const std::vector<Series> series = split(found);
   std::vector<SampleTable> tables = empty;
-  std::size_t sensors = 0;
-  for (SampleTable& table : tables) {
-    fill(table, series);
-    sensors += table.sensors();
-  }
-  if (sensors != series.size()) refuse_samples();
+  if (series.size() != sensor_count(tables)) refuse_samples();
+  for (SampleTable& table : tables) fill(table, series);
   return tables;
 }
 

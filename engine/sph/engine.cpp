@@ -678,10 +678,7 @@ Energy Engine<T>::energy() {
 
 template <typename T>
 FluidProbe Engine<T>::probe() const {
-  const Updates<T>& updates = sweeps_.updates;
-  return {method, particles, layout, bounds,
-          method.kernel == KernelKind::truncated_gaussian ? updates.sum_around_gaussian
-                                                          : updates.sum_around_wendland};
+  return {method, particles, layout, bounds, sweeps_.updates.sum_around};
 }
 
 template <typename T>

@@ -11,12 +11,6 @@ namespace {
 // Of differences of bounds; the bounds themselves are rounded outwards.
 constexpr float kSlack = 1e-3F;
 
-/// In single precision and a little farther: the value's own rounding, and that of a sum with it.
-float outwards(double value, double towards) {
-  constexpr double kRounding = 2.0 * std::numeric_limits<float>::epsilon();
-  return static_cast<float>(value + towards * kRounding * std::abs(value));
-}
-
 std::uint32_t tile_code(const Grid::Tile& i, const Grid::Tile& j) {
   const int column = std::clamp(j.column - i.column, -1, 1) + 1;
   const int row = std::clamp(j.row - i.row, -1, 1) + 1;
@@ -126,6 +120,11 @@ struct Extent {
 };
 
 }  // namespace
+
+float outwards(double value, double towards) {
+  constexpr double kRounding = 2.0 * std::numeric_limits<float>::epsilon();
+  return static_cast<float>(value + towards * kRounding * std::abs(value));
+}
 
 void ClusterBounds::assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout,
                                  const double* x, const double* y, const double* id) {

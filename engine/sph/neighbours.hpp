@@ -11,6 +11,10 @@
 
 namespace sluice {
 
+/// In single precision and a little farther towards -1 or 1: the value's own rounding, and that of
+/// a sum with it.
+[[nodiscard]] float outwards(double value, double towards);
+
 /// Boxes, in smoothing lengths, that the clusters of one set stay in while their particles are
 /// within the leeway of their tracks.
 struct ClusterBounds {

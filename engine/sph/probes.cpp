@@ -8,7 +8,6 @@
 #include "engine/sph/kernel.hpp"
 
 namespace sluice {
-
 namespace {
 
 /// The first in [begin, end) with values[i] >= least, values ascending; end where there is none. As
@@ -27,17 +26,13 @@ std::size_t first_from(const float* values, std::size_t begin, std::size_t end, 
 
 template <class Body>
 void FluidProbe::for_runs_in(const Box& box, const Body& body) const {
-  // The boxes hold their particles, in smoothing lengths; the slack covers single precision, far
-  // from the origin too.
+  // The clusters' boxes hold their particles, in smoothing lengths; the slack covers rounding.
   const double h = method_.smoothing_length;
-  const auto outwards = [h](double length, double towards) {
-    const double at = length / h;
-    return static_cast<float>(at + towards * (1e-3 + 4e-7 * std::abs(at)));
-  };
-  const float x_min = outwards(box.min.x(), -1.0);
-  const float x_max = outwards(box.max.x(), 1.0);
-  const float y_min = outwards(box.min.y(), -1.0);
-  const float y_max = outwards(box.max.y(), 1.0);
+  const double slack = 1e-3;
+  const float x_min = outwards(box.min.x() / h - slack, -1.0);
+  const float x_max = outwards(box.max.x() / h + slack, 1.0);
+  const float y_min = outwards(box.min.y() / h - slack, -1.0);
+  const float y_max = outwards(box.max.y() / h + slack, 1.0);
   for (std::size_t strip = bounds_.first_strip(y_min); strip + 1 < layout_.strip_begin.size();
        ++strip) {
     if (bounds_.strip_y_min_after[strip] > y_max) break;

@@ -11,10 +11,6 @@ namespace sluice {
 /// Values of the fluid at a point, from the particles around it. Finds them by the order in memory.
 class FluidProbe {
  public:
-  /// Updates::sum_around_... of the method's kernel.
-  using SumAround = void (*)(const Particles&, std::size_t begin, std::size_t end,
-                             const Surroundings&, PointSums&);
-
   FluidProbe(const Method& method, const Particles& particles, const Layout& layout,
              const ClusterBounds& bounds, SumAround sum_around)
       : method_(method),

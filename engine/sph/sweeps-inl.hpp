@@ -541,6 +541,7 @@ void fill_sweeps(const Method& method, Sweeps<T>& out) {
   }
   out.wall_pressure = &sum_wall_pressure<Shape, T>;
   out.reinitialise = &sum_reinitialisation<Shape, T>;
+  out.updates.sum_around = &sum_around<Shape>;
   out.prune = &prune_list<T>;
   out.target = hwy::TargetName(HWY_TARGET);
 }

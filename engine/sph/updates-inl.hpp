@@ -16,7 +16,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "engine/sph/kernel-inl.hpp"
 #include "engine/sph/updates.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -414,8 +413,6 @@ void fill_updates(Updates<T>& out) {
   out.measure = &measure;
   out.measure_acceleration = &measure_acceleration;
   out.measure_rates = &measure_rates<T>;
-  out.sum_around_gaussian = &sum_around<GaussianShape>;
-  out.sum_around_wendland = &sum_around<WendlandShape>;
   out.sum_energy = &sum_energy;
 }
 

@@ -100,6 +100,9 @@ struct PointSums {
   double volumes = 0.0;  ///< W/rho, m^3/kg
 };
 
+using SumAround = void (*)(const Particles&, std::size_t begin, std::size_t end,
+                           const Surroundings&, PointSums&);
+
 /// The loops over particles, one SIMD target; T is the type of the pair sums. All state is double.
 template <typename T>
 struct Updates {
@@ -133,10 +136,7 @@ struct Updates {
   /// Largest acceleration of the rates.
   void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
   /// Adds what is around a point of the particles in the slots [begin, end), whole clusters.
-  void (*sum_around_gaussian)(const Particles&, std::size_t begin, std::size_t end,
-                              const Surroundings&, PointSums&) = nullptr;
-  void (*sum_around_wendland)(const Particles&, std::size_t begin, std::size_t end,
-                              const Surroundings&, PointSums&) = nullptr;
+  SumAround sum_around = nullptr;
   /// Adds the energy of the particles.
   void (*sum_energy)(const ParticleSpan&, const Method&, Energy&) = nullptr;
 };

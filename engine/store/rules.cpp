@@ -100,10 +100,7 @@ void require_table(const Rules& rules, const SampleTable& table) {
 
 /// Each sensor of the scene's list is in one table.
 void require_places(const Rules& rules, const std::vector<SampleTable>& tables) {
-  std::size_t count = 0;
-  for (const SampleTable& table : tables) {
-    count += table.sensors();
-  }
+  const std::size_t count = sensor_count(tables);
   std::vector<bool> taken(count, false);
   for (const SampleTable& table : tables) {
     for (const std::uint64_t place : table.places) {

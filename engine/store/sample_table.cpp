@@ -20,6 +20,12 @@ Series series_of(const SampleTable& table, std::size_t sensor) {
 
 }  // namespace
 
+std::size_t sensor_count(const std::vector<SampleTable>& tables) {
+  std::size_t count = 0;
+  for (const SampleTable& table : tables) count += table.sensors();
+  return count;
+}
+
 std::uint64_t file_bytes(const std::vector<SampleTable>& tables) {
   constexpr std::uint64_t kLabels = 4096;  // groups, names, units and descriptions of a table
   std::uint64_t numbers = 0;
@@ -35,9 +41,7 @@ SampleTable table_of(const Series& series) {
 }
 
 std::vector<Series> split(const std::vector<SampleTable>& tables) {
-  std::size_t count = 0;
-  for (const SampleTable& table : tables) count += table.sensors();
-  std::vector<Series> all(count);
+  std::vector<Series> all(sensor_count(tables));
   for (const SampleTable& table : tables) {
     for (std::size_t sensor = 0; sensor < table.sensors(); ++sensor) {
       all[static_cast<std::size_t>(table.places[sensor])] = series_of(table, sensor);

@@ -26,6 +26,9 @@ struct SampleTable {
   [[nodiscard]] std::size_t width() const { return names.size() * columns.size(); }
 };
 
+/// Sensors in all of the tables.
+[[nodiscard]] std::size_t sensor_count(const std::vector<SampleTable>& tables);
+
 /// About what the tables take in a file, bytes.
 [[nodiscard]] std::uint64_t file_bytes(const std::vector<SampleTable>& tables);
 
