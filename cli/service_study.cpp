@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kRetry = 600.0;  // s
+constexpr double kStudyRetry = 600.0;  // s
 constexpr std::chrono::seconds kLook{2};
 
 void print_result(ServiceClient& service, const ServiceStudy& options, const std::string& id) {
@@ -39,7 +39,7 @@ void watch(ServiceClient& service, const std::string& id) {
   HttpRequest request;
   request.target = study_target(id);
   const Patience patience = patience_on_stderr(
-      kRetry, "the study goes on where its service is; watch it again with --watch");
+      kStudyRetry, "the study goes on where its service is; watch it again with --watch");
   std::map<std::string, std::string> known;
   while (true) {
     const Json study = service.object_of(service.ask_patiently(request, patience));
@@ -90,7 +90,7 @@ void submit_study(const ServiceStudy& options, std::string_view document,
   const HttpReply reply = service.ask_patiently(
       request,
       patience_on_stderr(
-          kRetry,
+          kStudyRetry,
           fmt::format("submit it again with --idempotency-key {}, which makes no second study",
                       key)),
       subject);

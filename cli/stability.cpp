@@ -81,10 +81,10 @@ std::vector<StabilityCase> chosen(const std::vector<std::string>& names) {
   return picked;
 }
 
-nlohmann::json chosen_scheme(const std::string& name) {
+nlohmann::ordered_json chosen_scheme(const std::string& name) {
   if (name == "recommended") return recommended_scheme();
   if (name == "paper") return paper_scheme();
-  return scheme_of(nlohmann::json::parse(read_scene(name).text));
+  return scheme_of(nlohmann::ordered_json::parse(read_scene(name).text));
 }
 
 void write_if_asked(const fs::path& path, const std::string& text) {
@@ -93,7 +93,7 @@ void write_if_asked(const fs::path& path, const std::string& text) {
 
 void run_suite(const StabilityArguments& arguments) {
   const std::vector<StabilityCase> cases = chosen(arguments.cases);
-  const nlohmann::json scheme = chosen_scheme(arguments.scheme);
+  const nlohmann::ordered_json scheme = chosen_scheme(arguments.scheme);
   const SuiteFolder folder(arguments.folder);
   StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full, scheme);
   std::vector<JudgedCase> judged;

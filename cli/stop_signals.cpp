@@ -18,11 +18,11 @@ constexpr std::array kSignals{SIGTERM, SIGINT, SIGHUP};
 
 /// The ends of a pipe: a handler may only write to one.
 std::array<int, 2> pipe_ends{-1, -1};
-volatile std::sig_atomic_t asked = 0;
+volatile std::sig_atomic_t stop_asked = 0;
 
 void take(int signal) {
-  if (asked != 0) ::_exit(128 + signal);
-  asked = 1;
+  if (stop_asked != 0) ::_exit(128 + signal);
+  stop_asked = 1;
   const int error = errno;
   [[maybe_unused]] const auto written = ::write(pipe_ends[1], "", 1);
   errno = error;
@@ -42,7 +42,7 @@ StopSignals::StopSignals() {
   if (::pipe2(pipe_ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
     throw std::runtime_error(fmt::format("cannot wait for signals: {}", std::strerror(errno)));
   }
-  asked = 0;
+  stop_asked = 0;
   for (const int signal : kSignals) set_action(signal, &take);
   set_action(SIGPIPE, SIG_IGN);
 }

@@ -21,6 +21,8 @@
 namespace sluice {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 namespace fs = std::filesystem;
 
 struct StudyArguments {
@@ -183,7 +185,6 @@ void end_unless_complete(const StudyResult& result, const fs::path& folder) {
 
 /// The study as text with its base scene in it, because a service reads no files for others.
 std::string whole_document(const StudyArguments& arguments) {
-  using Json = nlohmann::ordered_json;
   const fs::path file = arguments.file();
   static_cast<void>(read_study(file));
   Json document = Json::parse(read_text(file, kMaxSceneBytes + 1));

@@ -30,7 +30,7 @@ struct SubmitArguments {
   WatchOptions watching;
 };
 
-constexpr double kRetry = 30.0;  // s
+constexpr double kSubmitRetry = 30.0;  // s
 
 std::string query_of(const SubmitArguments& arguments) {
   std::string query;
@@ -137,7 +137,7 @@ void add_submit_options(CLI::App& verb, SubmitArguments& arguments) {
 
 void add_submit(CLI::App& app) {
   auto arguments = std::make_shared<SubmitArguments>();
-  arguments->watching.retry = kRetry;
+  arguments->watching.retry = kSubmitRetry;
   CLI::App* verb = app.add_subcommand("submit", "Give a scene to a service as a job");
   add_submit_options(*verb, *arguments);
   add_service_options(*verb, arguments->service);

@@ -23,6 +23,8 @@ inline constexpr int kMaxStreams = 16;
 inline constexpr int kMaxWaits = 24;
 /// Series that are filtered and written as text at once: what that takes in memory is bounded.
 inline constexpr int kMaxViews = 4;
+/// s between looks at the progress of a job that is waited for: progress makes no event.
+inline constexpr double kProgressLook = 0.5;
 
 /// What the routes share. Every member may be used from any thread.
 struct ApiContext {

@@ -15,7 +15,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kHeartbeat{15};
-constexpr double kLook = 0.5;  // s between looks at the progress, which makes no event
 constexpr std::size_t kBatch = 100;
 
 /// One reader of a job's history, from an event on. Sends what there is, then what comes; progress
@@ -30,7 +29,7 @@ class EventStream {
     if (over_ || context_->draining) return false;
     add_news(chunk);
     if (chunk.empty() && !over_) {
-      context_->store.wait_for_event(job_.id, last_, kLook);
+      context_->store.wait_for_event(job_.id, last_, kProgressLook);
       add_news(chunk);
     }
     const auto now = Clock::now();

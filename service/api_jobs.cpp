@@ -18,7 +18,6 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLongestWait = 60.0;  // s
-constexpr double kLook = 0.5;          // s between looks at the progress, which makes no event
 
 constexpr std::array<std::string_view, 6> kStates{"queued",    "running", "paused",
                                                   "completed", "failed",  "cancelled"};
@@ -51,7 +50,7 @@ Job wait_for_change(ApiContext& context, Job job, double seconds) {
   while (!is_ended(job.state) && !differs(before, job) && !context.draining) {
     const double left = std::chrono::duration<double>(until - Clock::now()).count();
     if (left <= 0.0) break;
-    context.store.wait_for_event(job.id, context.store.last_event(), std::min(left, kLook));
+    context.store.wait_for_event(job.id, context.store.last_event(), std::min(left, kProgressLook));
     job = find_job(context, job.id);
   }
   return job;

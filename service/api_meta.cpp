@@ -14,13 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Response text_response(std::string body, std::string_view type) {
-  Response response;
-  response.body = std::move(body);
-  response.content_type = type;
-  return response;
-}
-
 }  // namespace
 
 Response show_index(ApiContext& /*context*/, const RouteRequest& request) {

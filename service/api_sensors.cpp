@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 2> kFilters{"none", "gaussian"};
-constexpr std::array<std::string_view, 2> kFormats{"json", "csv"};
+constexpr std::array<std::string_view, 2> kSeriesFormats{"json", "csv"};
 constexpr int kMostPoints = 200'000;
 
 enum class Format { json, csv };
@@ -80,7 +80,7 @@ SensorQuery read_query(const Request& request) {
   const auto points = query.integer("max_points", 10, kMostPoints);
   if (points) asked.series.max_points = static_cast<std::size_t>(*points);
   asked.dimensionless = query.flag("dimensionless");
-  const auto format = query.word("format", kFormats);
+  const auto format = query.word("format", kSeriesFormats);
   if (gaussian && !asked.series.tau) query.reject("tau", "is needed with filter=gaussian, in s");
   if (!gaussian && asked.series.tau) query.reject("tau", "goes with filter=gaussian");
   const auto& [from, to] = std::pair(asked.series.from, asked.series.to);

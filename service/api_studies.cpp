@@ -17,14 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 4> kFormats{"json", "markdown", "csv", "svg"};
-
-Response text_response(std::string body, std::string_view type) {
-  Response response;
-  response.body = std::move(body);
-  response.content_type = type;
-  return response;
-}
+constexpr std::array<std::string_view, 4> kStudyFormats{"json", "markdown", "csv", "svg"};
 
 Response svg_response(const StudyResult& result) {
   Response response =
@@ -68,7 +61,7 @@ Response list_studies(ApiContext& context, const RouteRequest& request) {
 
 Response show_study(ApiContext& context, const RouteRequest& request) {
   QueryReader query(request.http);
-  const std::string format = query.word("format", kFormats).value_or("json");
+  const std::string format = query.word("format", kStudyFormats).value_or("json");
   query.finish();
   const StudyView view = view_study(context, find_study(context, request.parts[0]));
   if (format == "markdown") {

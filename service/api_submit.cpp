@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLongestLabel = 100;
 
 /// What stands in the query and the headers beside the scene.
-struct SubmitOptions {
+struct JobOptions {
   bool dry_run = false;
   std::string label;
   int priority = 0;
@@ -24,9 +24,9 @@ struct SubmitOptions {
   std::string key;
 };
 
-SubmitOptions read_options(const ApiContext& context, const Request& request) {
+JobOptions read_job_options(const ApiContext& context, const Request& request) {
   QueryReader query(request);
-  SubmitOptions options;
+  JobOptions options;
   options.dry_run = query.flag("dry_run");
   options.label = query.text("label", kLongestLabel).value_or("");
   options.priority = query.integer("priority", -1000, 1000).value_or(0);
@@ -40,7 +40,7 @@ SubmitOptions read_options(const ApiContext& context, const Request& request) {
   return options;
 }
 
-std::string hash_of(const Request& request, const SubmitOptions& options) {
+std::string hash_of(const Request& request, const JobOptions& options) {
   return request_hash(
       request, fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads));
 }
@@ -50,7 +50,7 @@ Response accepted(const ApiContext& context, const Job& job, bool repeated) {
                            job_document(job, context.scheduler.why_waiting(job)), repeated);
 }
 
-Job new_job(ApiContext& context, const Admitted& admitted, const SubmitOptions& options) {
+Job new_job(ApiContext& context, const Admitted& admitted, const JobOptions& options) {
   Job job;
   job.id = context.store.new_id();
   job.label = options.label;
@@ -61,7 +61,7 @@ Job new_job(ApiContext& context, const Admitted& admitted, const SubmitOptions& 
   return job;
 }
 
-Response make_job(ApiContext& context, const Request& request, const SubmitOptions& options) {
+Response make_job(ApiContext& context, const Request& request, const JobOptions& options) {
   const ServiceLimits& limits = context.scheduler.limits();
   const Admitted admitted = admit_scene(request.body, limits);
   const std::string hash = options.key.empty() ? "" : hash_of(request, options);
@@ -76,8 +76,7 @@ Response make_job(ApiContext& context, const Request& request, const SubmitOptio
   return accepted(context, submitted.job, submitted.repeated);
 }
 
-Response show_plan(const ApiContext& context, const Request& request,
-                   const SubmitOptions& options) {
+Response show_plan(const ApiContext& context, const Request& request, const JobOptions& options) {
   const Admitted admitted = admit_scene(request.body, context.scheduler.limits());
   return json_response(
       200, {{"plan", Json::parse(plan_json(plan(admitted.scene)))},
@@ -88,7 +87,7 @@ Response show_plan(const ApiContext& context, const Request& request,
 
 Response submit_job(ApiContext& context, const RouteRequest& request) {
   require_json(request.http, "a scene");
-  const SubmitOptions options = read_options(context, request.http);
+  const JobOptions options = read_job_options(context, request.http);
   if (options.dry_run) return show_plan(context, request.http, options);
   if (options.key.empty()) return make_job(context, request.http, options);
 

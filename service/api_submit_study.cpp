@@ -16,15 +16,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What stands in the query and the headers beside the study.
-struct SubmitOptions {
+struct StudyOptions {
   bool dry_run = false;
   int priority = 0;
   std::string key;
 };
 
-SubmitOptions read_options(const Request& request) {
+StudyOptions read_study_options(const Request& request) {
   QueryReader query(request);
-  SubmitOptions options;
+  StudyOptions options;
   options.dry_run = query.flag("dry_run");
   options.priority = query.integer("priority", -1000, 1000).value_or(0);
   query.finish();
@@ -57,7 +57,7 @@ Response show_plan(const StudyPlan& plan) {
 }
 
 /// The folder of the study comes first: with it, the next start can make what a crash left undone.
-StudyRecord make_study(ApiContext& context, const Request& request, const SubmitOptions& options,
+StudyRecord make_study(ApiContext& context, const Request& request, const StudyOptions& options,
                        const std::string& hash) {
   const StudyPlan plan = admit_study(request.body, context.scheduler.limits());
   StudyRecord study;
@@ -82,7 +82,7 @@ StudyRecord make_study(ApiContext& context, const Request& request, const Submit
 
 Response submit_study(ApiContext& context, const RouteRequest& request) {
   require_json(request.http, "a study");
-  const SubmitOptions options = read_options(request.http);
+  const StudyOptions options = read_study_options(request.http);
   if (options.dry_run) {
     return show_plan(admit_study(request.http.body, context.scheduler.limits()));
   }

@@ -9,7 +9,7 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// A request's method as a label: one of few, whatever was sent.
 std::string method_label(std::string_view method) {

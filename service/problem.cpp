@@ -101,6 +101,13 @@ Response problem_response(ProblemType type, std::string_view detail, const Probl
   return response;
 }
 
+Response text_response(std::string body, std::string_view type) {
+  Response response;
+  response.body = std::move(body);
+  response.content_type = type;
+  return response;
+}
+
 Response json_response(int status, const Json& value) {
   Response response;
   response.status = status;

@@ -80,6 +80,8 @@ class ApiError : public std::runtime_error {
   ProblemFields fields_;
 };
 
+/// A text of this media type as a response.
+[[nodiscard]] Response text_response(std::string body, std::string_view type);
 /// A JSON value as a response.
 [[nodiscard]] Response json_response(int status, const nlohmann::ordered_json& value);
 

@@ -6,7 +6,7 @@ namespace sluice {
 namespace {
 
 constexpr double kOldest = 1.0;  // s
-constexpr std::size_t kPage = 1000;
+constexpr std::size_t kQueuePage = 1000;
 
 bool before(const QueueView::Entry& a, const QueueView::Entry& b) {
   if (a.priority != b.priority) return a.priority > b.priority;
@@ -41,11 +41,11 @@ void QueueView::refresh(double now) const {
   entries_.clear();
   JobFilter filter;
   filter.state = JobState::queued;
-  filter.limit = kPage;
+  filter.limit = kQueuePage;
   for (;;) {
     const std::vector<Job> page = store_.list(filter);
     for (const Job& job : page) entries_.push_back({job.priority, job.threads, job.id});
-    if (page.size() < kPage) break;
+    if (page.size() < kQueuePage) break;
     filter.after = page.back().id;
   }
   std::sort(entries_.begin(), entries_.end(), before);

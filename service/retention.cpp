@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kDeletedPrefix = ".deleted-";
-constexpr std::size_t kPage = 500;
+constexpr std::size_t kEndedPage = 500;
 
 /// A study keeps what its run came to.
 void keep_for_study(const JobStore& store, const fs::path& data, const std::string& id) {
@@ -46,14 +46,14 @@ std::size_t delete_old_jobs_in(JobStore& store, const fs::path& data, JobState s
   std::size_t deleted = 0;
   JobFilter filter;
   filter.state = state;
-  filter.limit = kPage;
+  filter.limit = kEndedPage;
   while (deleted < most) {
     const std::vector<Job> page = store.list(filter);
     for (const Job& job : page) {
       const bool old = job.ended_ms > 0 && job.ended_ms < limit_ms;
       if (old && deleted < most && try_to_delete(store, data, job.id)) ++deleted;
     }
-    if (page.size() < kPage) break;
+    if (page.size() < kEndedPage) break;
     filter.after = page.back().id;
   }
   return deleted;

@@ -86,13 +86,14 @@ step_format() {
 }
 
 step_tidy() {
-  build release || { fail "tidy: build"; return; }
   say "tidy"
+  # The commands of a build that compiles each file by itself.
+  cmake --preset debug >"$scratch/configure" || { cat "$scratch/configure"; fail "tidy: configure"; return; }
   local root
   root=$(printf '%s' "$PWD" | sed 's/[][\.*^$+?(){}|]/\\&/g')
   local ours="^$root/(engine|service|cli)/"
   # The build's options are the compiler's, and clang does not know all of its warnings.
-  if run-clang-tidy -quiet -p build/release -j "$jobs" -extra-arg=-Wno-unknown-warning-option \
+  if run-clang-tidy -quiet -p build/debug -j "$jobs" -extra-arg=-Wno-unknown-warning-option \
     -header-filter="$ours" "$ours" >"$scratch/tidy" 2>/dev/null; then
     pass
   else

@@ -9,6 +9,8 @@
 namespace sluice {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 std::string state_of(const SetupResult& setup, const StudyResult& result) {
   if (setup.completed == setup.runs.size()) return "completed";
   std::string text;
@@ -195,7 +197,6 @@ std::string study_csv(const StudyResult& result) {
 }
 
 nlohmann::ordered_json study_json(const StudyResult& result) {
-  using Json = nlohmann::ordered_json;
   Json runs = Json::array();
   for (std::size_t k = 0; k < result.runs.size(); ++k) {
     const StudyRun& run = result.runs[k];

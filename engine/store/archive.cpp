@@ -7,8 +7,8 @@
 
 namespace sluice {
 
-void ReadArchive::require_shape(const std::string& path, const Shape& shape) const {
-  const Shape found = reader_.info(path).shape;
+void ReadArchive::require_shape(const std::string& path, const Extents& shape) const {
+  const Extents found = reader_.info(path).shape;
   if (found != shape) {
     throw StorageError(StorageFault::corrupt,
                        fmt::format("data set {} has the shape ({}) where ({}) is expected", path,

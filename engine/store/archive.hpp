@@ -42,7 +42,7 @@ class WriteArchive {
   }
   void group(const std::string& path) { writer_.create_group(path); }
   template <class T>
-  void data_set(const std::string& path, const std::vector<T>& values, const Shape& shape,
+  void data_set(const std::string& path, const std::vector<T>& values, const Extents& shape,
                 const Label& label) {
     writer_.write(path, std::span<const T>(values), shape);
     writer_.set_attribute(path, "unit", label.unit);
@@ -72,7 +72,7 @@ class ReadArchive {
   }
   void group(const std::string& path) { met_[path]; }
   template <class T>
-  void data_set(const std::string& path, std::vector<T>& values, const Shape& shape,
+  void data_set(const std::string& path, std::vector<T>& values, const Extents& shape,
                 const Label& label) {
     require_shape(path, shape);
     reader_.read(path, values);
@@ -93,7 +93,7 @@ class ReadArchive {
   void require_all_met() const;
 
  private:
-  void require_shape(const std::string& path, const Shape& shape) const;
+  void require_shape(const std::string& path, const Extents& shape) const;
   static void require_unit(const std::string& path, const std::string& found,
                            const std::string& wanted);
   void require_plausible_count(const std::string& path, const std::string& name,
@@ -118,7 +118,8 @@ class DigestArchive {
   }
   void group(const std::string&) {}
   template <class T>
-  void data_set(const std::string& path, const std::vector<T>& values, const Shape&, const Label&) {
+  void data_set(const std::string& path, const std::vector<T>& values, const Extents&,
+                const Label&) {
     add_text(path);
     add(static_cast<std::uint64_t>(values.size()));
     digest_.update(std::as_bytes(std::span(values)));

@@ -135,7 +135,7 @@ constexpr ElementType kElementType<float> = ElementType::float32;
 template <>
 constexpr ElementType kElementType<std::uint64_t> = ElementType::uint64;
 
-Shape shape_of(hid_t space) {
+Extents shape_of(hid_t space) {
   const int rank = H5Sget_simple_extent_ndims(space);
   std::vector<hsize_t> lengths(static_cast<std::size_t>(std::max(rank, 0)));
   H5Sget_simple_extent_dims(space, lengths.data(), nullptr);
@@ -177,7 +177,7 @@ void require_text(std::string_view text, const std::string& path, const std::str
 
 }  // namespace
 
-std::uint64_t element_count(const Shape& shape) {
+std::uint64_t element_count(const Extents& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
@@ -277,7 +277,7 @@ class Hdf5Writer::Impl {
   }
 
   template <class T>
-  void write(const std::string& path, std::span<const T> values, const Shape& shape) {
+  void write(const std::string& path, std::span<const T> values, const Extents& shape) {
     if (element_count(shape) != values.size()) {
       throw StorageError(StorageFault::invalid_content,
                          fmt::format("{}: {} values where its shape holds {}", path, values.size(),
@@ -346,7 +346,7 @@ class Hdf5Writer::Impl {
     return list;
   }
 
-  [[nodiscard]] Handle simple_space(const Shape& shape, const std::string& path) const {
+  [[nodiscard]] Handle simple_space(const Extents& shape, const std::string& path) const {
     const std::vector<hsize_t> lengths(shape.begin(), shape.end());
     return check_.own(H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr),
                       H5Sclose, "shape", path);
@@ -357,7 +357,7 @@ class Hdf5Writer::Impl {
   }
 
   /// Chunks of equal length along the first direction; an empty set has no chunks.
-  [[nodiscard]] Handle data_set_properties(const Shape& shape, const std::string& path) const {
+  [[nodiscard]] Handle data_set_properties(const Extents& shape, const std::string& path) const {
     Handle list = properties(H5P_DATASET_CREATE);
     const std::uint64_t count = element_count(shape);
     if (count == 0) {
@@ -385,14 +385,15 @@ Hdf5Writer& Hdf5Writer::operator=(Hdf5Writer&&) noexcept = default;
 
 void Hdf5Writer::create_group(const std::string& path) { impl_->create_group(path); }
 void Hdf5Writer::write(const std::string& path, std::span<const double> values,
-                       const Shape& shape) {
+                       const Extents& shape) {
   impl_->write(path, values, shape);
 }
-void Hdf5Writer::write(const std::string& path, std::span<const float> values, const Shape& shape) {
+void Hdf5Writer::write(const std::string& path, std::span<const float> values,
+                       const Extents& shape) {
   impl_->write(path, values, shape);
 }
 void Hdf5Writer::write(const std::string& path, std::span<const std::uint64_t> values,
-                       const Shape& shape) {
+                       const Extents& shape) {
   impl_->write(path, values, shape);
 }
 void Hdf5Writer::set_attribute(const std::string& path, const std::string& name, double value) {
@@ -489,7 +490,7 @@ class Hdf5Reader::Impl {
   void texts(const std::string& path, const std::string& name,
              std::vector<std::string>& values) const {
     const Handle attribute = open_attribute(path, name);
-    const Shape shape = require_attribute(attribute, ElementType::text, 1, path, name);
+    const Extents shape = require_attribute(attribute, ElementType::text, 1, path, name);
     require_plausible(shape, sizeof(char*), path);
     values = read_texts(attribute, static_cast<std::size_t>(shape[0]), path);
   }
@@ -547,8 +548,8 @@ class Hdf5Reader::Impl {
     return check_.own(H5Aget_type(attribute.get()), H5Tclose, "read an attribute's type of", path);
   }
 
-  Shape require_attribute(const Handle& attribute, ElementType type, std::size_t rank,
-                          const std::string& path, const std::string& name) const {
+  Extents require_attribute(const Handle& attribute, ElementType type, std::size_t rank,
+                            const std::string& path, const std::string& name) const {
     require_type(element_type(type_of(attribute, path).get()), type,
                  fmt::format("attribute '{}' of {}", name, path));
     const Handle space =
@@ -570,7 +571,7 @@ class Hdf5Reader::Impl {
   }
 
   /// Nothing is compressed, so that no set is larger than the file it lies in.
-  void require_plausible(const Shape& shape, std::size_t element_size,
+  void require_plausible(const Extents& shape, std::size_t element_size,
                          const std::string& path) const {
     std::uint64_t room = image_size_ / element_size;
     for (const std::uint64_t length : shape) {

@@ -11,8 +11,8 @@
 namespace sluice {
 
 /// Lengths of an array along each of its directions; the last runs fastest.
-using Shape = std::vector<std::uint64_t>;
-[[nodiscard]] std::uint64_t element_count(const Shape& shape);
+using Extents = std::vector<std::uint64_t>;
+[[nodiscard]] std::uint64_t element_count(const Extents& shape);
 
 enum class ElementType { float64, float32, uint64, text, other };
 [[nodiscard]] const char* to_string(ElementType type);
@@ -26,7 +26,7 @@ struct Hdf5Object {
 
 struct DataSetInfo {
   ElementType type = ElementType::other;
-  Shape shape;
+  Extents shape;
 };
 
 /// Builds an HDF5 file in memory: numbers little endian, texts as UTF-8 of variable length, data
@@ -42,9 +42,9 @@ class Hdf5Writer {
   Hdf5Writer& operator=(Hdf5Writer&&) noexcept;
 
   void create_group(const std::string& path);
-  void write(const std::string& path, std::span<const double> values, const Shape& shape);
-  void write(const std::string& path, std::span<const float> values, const Shape& shape);
-  void write(const std::string& path, std::span<const std::uint64_t> values, const Shape& shape);
+  void write(const std::string& path, std::span<const double> values, const Extents& shape);
+  void write(const std::string& path, std::span<const float> values, const Extents& shape);
+  void write(const std::string& path, std::span<const std::uint64_t> values, const Extents& shape);
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, std::uint64_t value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& value);

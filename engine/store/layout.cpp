@@ -72,7 +72,7 @@ template <class Archive, class Subject>
 void particle_fields(Archive& archive, Integrator integrator, Subject& particles) {
   archive.group("/particles");
   archive.count("/particles", "count", particles.x);
-  const Shape shape{particles.size()};
+  const Extents shape{particles.size()};
   for (const Field& field : kFields) {
     if (carries(integrator, field)) {
       archive.data_set("/particles/" + std::string(field.name), particles.*field.member, shape,
@@ -90,7 +90,7 @@ void retired_column(Archive& archive, const std::string& name, List& list, Membe
   for (const Retired& retired : list) {
     column.push_back(to_file(retired.*member));
   }
-  archive.data_set("/retired/" + name, column, Shape{list.size()}, label);
+  archive.data_set("/retired/" + name, column, Extents{list.size()}, label);
   if constexpr (Archive::kReads) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       from_file(column[i], list[i].*member);
@@ -244,7 +244,7 @@ void frame_layout(Archive& archive, Subject& frame) {
   archive.attribute("/", "time", frame.time);
   archive.group("/particles");
   archive.count("/particles", "count", frame.x);
-  const Shape shape{frame.x.size()};
+  const Extents shape{frame.x.size()};
   for (const FrameField& field : kFrameFields) {
     archive.data_set("/particles/" + std::string(field.name), frame.*field.member, shape,
                      {std::string(field.unit), std::string(field.description)});

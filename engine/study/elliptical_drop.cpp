@@ -13,6 +13,8 @@
 namespace sluice {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr double kEnd = 0.8;     // A t, with A = 1/s and R = 1 m
 constexpr double kSound = 15.0;  // m/s
 
@@ -99,7 +101,6 @@ Table drop_table(const std::vector<DropPoint>& points) {
 }
 
 nlohmann::ordered_json drop_json(const std::vector<DropPoint>& points) {
-  using Json = nlohmann::ordered_json;
   const auto value = [](const std::optional<double>& number) {
     return number ? Json(*number) : Json(nullptr);
   };

@@ -24,7 +24,7 @@ std::optional<double> rise_height(const std::optional<Rise>& rise) {
   return rise ? std::optional(rise->height) : std::nullopt;
 }
 
-std::string percent(const std::optional<double>& share) {
+std::string whole_percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.0f} %", 100.0 * *share) : "-";
 }
 
@@ -58,7 +58,7 @@ void add_peaks(PressureRows& rows) {
     return fmt::format("{:.2f}-{:.2f}", one.peak_statistics.low, one.peak_statistics.high);
   });
   rows.add("place in that band (0-100 %)", "simulation",
-           [](const auto& one) { return percent(one.place_in_band()); });
+           [](const auto& one) { return whole_percent(one.place_in_band()); });
   rows.add("first peak, T", "simulation",
            [](const auto& one) { return cell(peak_time(one.simulation.peak)); });
 }

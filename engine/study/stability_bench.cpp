@@ -17,7 +17,7 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// Keeps the warnings of a run.
 class WarningKeeper final : public Reporter {

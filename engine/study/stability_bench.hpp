@@ -41,7 +41,7 @@ class SuiteStopped : public std::runtime_error {
 /// Runs scenes of the suite as ordinary jobs, each in a folder of its own, with one scheme.
 class StabilityBench {
  public:
-  StabilityBench(std::filesystem::path folder, SuiteForm form, nlohmann::json scheme)
+  StabilityBench(std::filesystem::path folder, SuiteForm form, nlohmann::ordered_json scheme)
       : folder_(std::move(folder)), form_(form), scheme_(std::move(scheme)) {}
 
   /// Changes the particles of a scene before its first step: what a scene cannot say.
@@ -50,12 +50,12 @@ class StabilityBench {
   /// Runs `scene` to its end or failure, with the bench's scheme unless it has numerics of its own.
   /// `stability` skip: also what linear analysis refuses.
   /// Throws StorageError; SuiteStopped.
-  [[nodiscard]] CaseRun run(const nlohmann::json& scene,
+  [[nodiscard]] CaseRun run(const nlohmann::ordered_json& scene,
                             StabilityCheck stability = StabilityCheck::refuse,
                             const Prepare& prepare = {});
 
   [[nodiscard]] SuiteForm form() const { return form_; }
-  [[nodiscard]] const nlohmann::json& scheme() const { return scheme_; }
+  [[nodiscard]] const nlohmann::ordered_json& scheme() const { return scheme_; }
   /// `quick` or `full`, as the form is.
   template <class T>
   [[nodiscard]] T pick(T quick, T full) const {
@@ -65,7 +65,7 @@ class StabilityBench {
  private:
   std::filesystem::path folder_;
   SuiteForm form_;
-  nlohmann::json scheme_;
+  nlohmann::ordered_json scheme_;
   int runs_ = 0;
 };
 

@@ -14,7 +14,7 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 CaseResult elliptical_drop(StabilityBench& bench) {
   const DropRun drop = run_drop(bench, bench.pick(15, 40));
@@ -99,7 +99,7 @@ CaseResult pulsing_drop(StabilityBench& bench) {
   return result;
 }
 
-constexpr std::array kCases{
+constexpr std::array kDropCases{
     StabilityCase{"elliptical-drop", "drop of v = A (-x, y), to A t = 0.8", "axis within 2 %",
                   elliptical_drop},
     StabilityCase{"pulsing-drop", "drop that pulses under a central force",
@@ -108,6 +108,6 @@ constexpr std::array kCases{
 
 }  // namespace
 
-std::span<const StabilityCase> drop_cases() { return kCases; }
+std::span<const StabilityCase> drop_cases() { return kDropCases; }
 
 }  // namespace sluice

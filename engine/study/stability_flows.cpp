@@ -15,7 +15,7 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 double angular_momentum(const Particles& p) {
   double sum = 0.0;
@@ -76,17 +76,16 @@ double dominant_frequency(const Series& series, double near) {
 /// First sloshing mode of a tank of width L = 2 H: k = pi/L, omega^2 = g k tanh(k H). The kinetic
 /// energy goes twice as fast.
 CaseResult standing_wave(StabilityBench& bench) {
-  constexpr double kG = 9.81;
   constexpr double kAmplitude = 0.05;
   const double k = 0.5 * std::numbers::pi;
-  const double omega = std::sqrt(kG * k * std::tanh(k));
+  const double omega = std::sqrt(kGravity * k * std::tanh(k));
   Json points = Json::array({{0.0, 0.0}, {2.0, 0.0}});
   for (int i = 100; i >= 0; --i) {
     const double x = 0.02 * i;
     points.push_back({x, 1.0 + kAmplitude * std::cos(k * x)});
   }
   Json scene = tank_scene("standing-wave", Vec(2.0, 1.5), Json::array({Json::object()}),
-                          1.0 / bench.pick(20, 40), 10 * std::sqrt(2 * kG),
+                          1.0 / bench.pick(20, 40), 10 * std::sqrt(2 * kGravity),
                           4 * 2 * std::numbers::pi / omega);
   scene["fluid"][0] = {{"shape", "polygon"}, {"points", points}};
   const CaseRun run = bench.run(scene);
@@ -148,14 +147,14 @@ CaseResult overlapping_regions(StabilityBench& bench) {
 
 CaseResult free_fall(StabilityBench& bench) {
   Json scene = in_space("free-fall", rectangle(Vec::Zero(), Vec(0.01, 0.01)), 0.01, 50.0, 1.0);
-  scene["gravity"] = {0.0, -9.81};
+  scene["gravity"] = {0.0, -kGravity};
   scene["fluid"][0]["velocity"] = {1.0, 2.0};
   const CaseRun run = bench.run(scene);
   CaseResult result = result_of(run, Verdict::stable);
   if (!run.completed()) return result;
   const SolverState& end = run.last->solver;
   const double t = end.time;
-  const Vec exact = Vec(0.005, 0.005) + Vec(t, 2 * t - 0.5 * 9.81 * t * t);
+  const Vec exact = Vec(0.005, 0.005) + Vec(t, 2 * t - 0.5 * kGravity * t * t);
   result.figures.push_back(
       {"place over path", (end.particles.position(0) - exact).norm() / exact.norm(), 1e-12});
   return result;
@@ -191,7 +190,7 @@ CaseResult absurd_values(StabilityBench& bench) {
   return result;
 }
 
-constexpr std::array kCases{
+constexpr std::array kFlowCases{
     StabilityCase{"rotating-patch", "rotating square patch", "angular momentum to 1e-3",
                   rotating_patch},
     StabilityCase{"standing-wave", "first sloshing mode, a = H/20", "period within 2 %",
@@ -212,6 +211,6 @@ constexpr std::array kCases{
 
 }  // namespace
 
-std::span<const StabilityCase> flow_cases() { return kCases; }
+std::span<const StabilityCase> flow_cases() { return kFlowCases; }
 
 }  // namespace sluice

@@ -15,6 +15,8 @@
 namespace sluice {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr int kSide = 20;        // particles
 constexpr double kNoise = 1e-9;  // of c
 constexpr double kBeyondDoubt = 100;
@@ -192,7 +194,6 @@ std::string map_text_line(const StabilityRow& row) {
 }
 
 nlohmann::ordered_json map_json(const StabilityMap& map) {
-  using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (const StabilityRow& row : map.rows) {
     Json cells = Json::array();

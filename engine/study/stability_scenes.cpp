@@ -7,9 +7,8 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
-constexpr double kGravity = 9.81;  // m/s^2
 constexpr std::array kProbeDepths{0.25, 0.5, 0.75};
 
 Json pair(const Vec& vec) { return Json::array({vec.x(), vec.y()}); }

@@ -14,7 +14,7 @@
 namespace sluice {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 CaseResult still_recommended(StabilityBench& bench) {
   StillWater water;
@@ -243,7 +243,7 @@ CaseResult tall_column(StabilityBench& bench) {
   return result;
 }
 
-constexpr std::array kCases{
+constexpr std::array kTableCases{
     StabilityCase{"still-tank", "still water, recommended scheme", "pressure within 1 %",
                   still_recommended},
     StabilityCase{"still-tank-paper", "still water, the paper's scheme", "drifts by at most 8 %",
@@ -276,6 +276,6 @@ constexpr std::array kCases{
 
 }  // namespace
 
-std::span<const StabilityCase> table_cases() { return kCases; }
+std::span<const StabilityCase> table_cases() { return kTableCases; }
 
 }  // namespace sluice

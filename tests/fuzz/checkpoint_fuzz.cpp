@@ -62,7 +62,7 @@ class Alteration {
   }
 
   template <class T>
-  bool numbers(const std::string& path, Shape shape) {
+  bool numbers(const std::string& path, Extents shape) {
     std::vector<T> values;
     reader_.read(path, values);
     switch (input_.ConsumeIntegralInRange<int>(0, 7)) {
@@ -94,7 +94,7 @@ class Alteration {
   }
 
   template <class T>
-  void resize(std::vector<T>& values, Shape& shape, std::uint64_t rows) {
+  void resize(std::vector<T>& values, Extents& shape, std::uint64_t rows) {
     shape[0] = rows;
     values.resize(element_count(shape));
   }

@@ -130,8 +130,8 @@ TEST(CheckpointFile, IsNotWrittenFromContentThatBreaksTheRules) {
 struct Change {
   std::string leave_out = {};  ///< path, or path@attribute
   std::function<void(Hdf5Writer&)> add = [](Hdf5Writer&) {};
-  std::function<void(const std::string& path, std::vector<double>&, Shape&)> alter =
-      [](const std::string&, std::vector<double>&, Shape&) {};
+  std::function<void(const std::string& path, std::vector<double>&, Extents&)> alter =
+      [](const std::string&, std::vector<double>&, Extents&) {};
 };
 
 void copy_attribute(const Hdf5Reader& from, Hdf5Writer& to, const std::string& path,
@@ -156,7 +156,7 @@ void copy_attribute(const Hdf5Reader& from, Hdf5Writer& to, const std::string& p
 
 void copy_data_set(const Hdf5Reader& from, Hdf5Writer& to, const std::string& path,
                    const Change& change) {
-  Shape shape = from.info(path).shape;
+  Extents shape = from.info(path).shape;
   if (from.info(path).type == ElementType::uint64) {
     std::vector<std::uint64_t> values;
     from.read(path, values);
@@ -274,13 +274,13 @@ TEST(CheckpointLayout, RefusesOtherVersionsTypesUnitsShapesAndValues) {
   refuse(StorageFault::corrupt, replaced("/series/0000@units", std::vector<std::string>{}));
   for (const char* set :
        {"/particles/vy", "/series/0000/time", "/series/0000/weight", "/series/0001/values"}) {
-    const auto shorten = [&](const std::string& path, std::vector<double>& values, Shape& shape) {
+    const auto shorten = [&](const std::string& path, std::vector<double>& values, Extents& shape) {
       if (path == set) {
         shape = {values.size() - 1};
         values.pop_back();
       }
     };
-    const auto spoil = [&](const std::string& path, std::vector<double>& values, Shape&) {
+    const auto spoil = [&](const std::string& path, std::vector<double>& values, Extents&) {
       if (path == set) {
         values.back() = kNan;
       }
@@ -313,7 +313,7 @@ void add_by_sensor(Hdf5Writer& writer, const std::vector<Series>& list) {
     writer.set_attribute(path, "next_index", series.next_index);
     writer.set_attribute(path, "count", std::uint64_t{series.size()});
     const auto add = [&](const std::string& name, const std::vector<double>& values,
-                         const Shape& shape, const std::string& unit) {
+                         const Extents& shape, const std::string& unit) {
       writer.write(path + "/" + name, std::span(values), shape);
       writer.set_attribute(path + "/" + name, "unit", unit);
       writer.set_attribute(path + "/" + name, "description", std::string("as it was"));

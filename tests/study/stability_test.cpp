@@ -212,15 +212,16 @@ TEST(StabilityMap, CountsTheCellsThatDifferFromThePrediction) {
 }
 
 TEST(StabilityScenes, SchemesAreThoseOfTheExamples) {
+  using Sorted = nlohmann::json;  // equal whatever the order of keys
   const auto example = [](const std::string& name) {
     std::ifstream file(std::string(SLUICE_SOURCE_DIR) + "/schemas/examples/" + name);
-    return scheme_of(nlohmann::json::parse(file));
+    return Sorted(scheme_of(Sorted::parse(file)));
   };
   for (const char* name :
        {"dambreak.json", "dambreak-quick.json", "still-water.json", "martin-moyce.json"}) {
-    EXPECT_EQ(recommended_scheme(), example(name)) << name;
+    EXPECT_EQ(Sorted(recommended_scheme()), example(name)) << name;
   }
-  EXPECT_EQ(paper_scheme(), example("dambreak-paper.json"));
+  EXPECT_EQ(Sorted(paper_scheme()), example("dambreak-paper.json"));
 }
 
 TEST(StabilityScenes, WithoutATankTheSchemesWallTermsAndItsShiftingAreLeftOut) {
