@@ -105,8 +105,7 @@ class SurgeFrontSampler final : public Sampler {
 /// Kinetic, potential and internal energy of the fluid, J per metre of depth.
 class EnergySampler final : public Sampler {
  public:
-  /// The energy is summed on all threads already.
-  bool shares_a_table() const override { return false; }
+  bool uses_all_threads() const override { return true; }
   std::vector<Series::Column> columns() const override {
     return {{"kinetic", "J/m"}, {"potential", "J/m"}, {"internal", "J/m"}};
   }
@@ -127,7 +126,6 @@ class ArrivalSampler final : public Sampler {
       : position_(position), reach_(1.5 * spacing) {}
   std::vector<Series::Column> columns() const override { return {{"value", "s"}}; }
   bool is_event() const override { return true; }
-  bool shares_a_table() const override { return false; }
   double sample(const Solver& solver, std::span<double> values) const override {
     const bool arrived = solver.distance_to_fluid(position_) <= reach_;
     values[0] = arrived ? solver.time() : kDry;
@@ -139,31 +137,9 @@ class ArrivalSampler final : public Sampler {
   double reach_;
 };
 
-/// Sensors that a thread asks at once: some microseconds of work.
-constexpr std::size_t kTask = 16;
-
-/// One row of the table: what its sensors measure now. False when it holds nothing to keep.
-bool append(SampleTable& table, const Solver& solver,
-            const std::vector<std::unique_ptr<Sampler>>& samplers) {
-  const std::size_t columns = table.columns.size();
-  const std::size_t old_values = table.values.size();
-  const std::size_t old_weights = table.weight.size();
-  table.values.resize(old_values + table.width(), kDry);
-  table.weight.resize(old_weights + table.sensors());
-  solver.for_each((samplers.size() + kTask - 1) / kTask, [&](std::size_t task) {
-    const std::size_t end = std::min(kTask * (task + 1), samplers.size());
-    for (std::size_t i = kTask * task; i < end; ++i) {
-      double* values = table.values.data() + old_values + i * columns;
-      table.weight[old_weights + i] = samplers[i]->sample(solver, {values, columns});
-    }
-  });
-  if (samplers.front()->is_event() && table.weight.back() == 0.0) {
-    table.values.resize(old_values);
-    table.weight.resize(old_weights);
-    return false;
-  }
-  return true;
-}
+/// Most sensors that a thread asks at once: some microseconds of work.
+constexpr std::size_t kMostAtOnce = 16;
+constexpr std::size_t kPieces = 64;  // of a table: few sensors go one by one
 
 std::string_view kind_name(SensorKind kind) {
   switch (kind) {
@@ -222,23 +198,67 @@ SensorArray::Group& SensorArray::group_for(const Sensor& sensor, const Sampler& 
   const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
     return group.kind == sensor.kind && group.interval == sensor.interval;
   });
-  if (same != groups_.end() && sampler.shares_a_table()) return *same;
+  // An event ends its sensor and no other.
+  if (same != groups_.end() && !sampler.is_event()) return *same;
   empty_.emplace_back();
   return groups_.emplace_back(Group{sensor.kind, sensor.interval, {}});
 }
 
+SensorArray::Row SensorArray::begin_row(const Group& group, SampleTable& table) {
+  const Row row{&group, &table, table.values.size(), table.weight.size()};
+  table.values.resize(row.values_from + table.width(), kDry);
+  table.weight.resize(row.weight_from + table.sensors());
+  return row;
+}
+
+void SensorArray::fill(const Row& row, const Solver& solver, std::size_t begin, std::size_t end) {
+  const std::size_t columns = row.table->columns.size();
+  for (std::size_t i = begin; i < end; ++i) {
+    double* values = row.table->values.data() + row.values_from + i * columns;
+    row.table->weight[row.weight_from + i] =
+        row.group->samplers[i]->sample(solver, {values, columns});
+  }
+}
+
+void SensorArray::end_row(const Row& row, double time) {
+  SampleTable& table = *row.table;
+  if (row.group->samplers.front()->is_event() && table.weight.back() == 0.0) {
+    table.values.resize(row.values_from);
+    table.weight.resize(row.weight_from);
+    return;
+  }
+  table.duration.push_back(table.time.empty() ? 0.0 : time - table.time.back());
+  table.time.push_back(time);
+}
+
 void SensorArray::sample(const Solver& solver, std::vector<SampleTable>& tables) const {
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const Group& group = groups_[i];
-    SampleTable& table = tables[i];
-    const double time = solver.time();
+  struct Piece {
+    std::size_t row, begin, end;
+  };
+  const double time = solver.time();
+  std::vector<Row> rows;
+  std::vector<Piece> pieces;
+  for (std::size_t n = 0; n < groups_.size(); ++n) {
+    const Group& group = groups_[n];
+    SampleTable& table = tables[n];
     if (!is_due(time, group.interval, table.next_index)) continue;
     if (group.samplers.front()->is_event() && table.size() > 0) continue;
     table.next_index = next_index_after(time, group.interval, table.next_index);
-    if (!append(table, solver, group.samplers)) continue;
-    table.duration.push_back(table.time.empty() ? 0.0 : time - table.time.back());
-    table.time.push_back(time);
+    rows.push_back(begin_row(group, table));
+    const std::size_t count = table.sensors();
+    if (group.samplers.front()->uses_all_threads()) {
+      fill(rows.back(), solver, 0, count);
+      continue;
+    }
+    const std::size_t at_once = std::clamp(count / kPieces, std::size_t{1}, kMostAtOnce);
+    for (std::size_t i = 0; i < count; i += at_once) {
+      pieces.push_back({rows.size() - 1, i, std::min(i + at_once, count)});
+    }
   }
+  solver.for_each(pieces.size(), [&](std::size_t n) {
+    fill(rows[pieces[n].row], solver, pieces[n].begin, pieces[n].end);
+  });
+  for (const Row& row : rows) end_row(row, time);
 }
 
 }  // namespace sluice

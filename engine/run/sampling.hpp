@@ -21,8 +21,8 @@ class Sampler {
   [[nodiscard]] virtual double sample(const Solver& solver, std::span<double> values) const = 0;
   /// A sampler that looks for an event ends at its first sample and stores no dry ones.
   [[nodiscard]] virtual bool is_event() const { return false; }
-  /// Whether samplers of the kind may share a table, and so be asked on several threads at once.
-  [[nodiscard]] virtual bool shares_a_table() const { return true; }
+  /// Others are asked on several threads at once.
+  [[nodiscard]] virtual bool uses_all_threads() const { return false; }
 };
 
 [[nodiscard]] std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene);
@@ -49,6 +49,18 @@ class SensorArray {
     std::vector<std::unique_ptr<Sampler>> samplers;
   };
   Group& group_for(const Sensor& sensor, const Sampler& sampler);
+
+  /// A row of a table that is being filled: what its sensors measure now.
+  struct Row {
+    const Group* group;
+    SampleTable* table;
+    std::size_t values_from;
+    std::size_t weight_from;
+  };
+  static Row begin_row(const Group& group, SampleTable& table);
+  static void fill(const Row& row, const Solver& solver, std::size_t begin, std::size_t end);
+  /// Ends the row; without it where a sensor of an event saw none.
+  static void end_row(const Row& row, double time);
 
   std::vector<Group> groups_;
   std::vector<SampleTable> empty_;

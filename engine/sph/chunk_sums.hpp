@@ -21,17 +21,23 @@ class ChunkSums {
     of_chunks_.resize(chunks);
     arrivals_.resize(chunks);
     for (auto& arrivals : arrivals_) arrivals.clear();
+    sources_.resize(chunks);
+    for (auto& sources : sources_) sources.clear();
     for (std::size_t k = 0; k < chunks; ++k) {
       const PairList::Chunk& chunk = list.chunks[k];
       sums_[k].resize(stride * chunk.places());
       of_chunks_[k] = sums_[k].data();
       std::size_t place = chunk.begin.size() - 1;
       for (const std::uint32_t guest : chunk.guests) {
-        arrivals_[guest / clusters_per_chunk].push_back(
-            {static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(place++),
-             static_cast<std::uint32_t>(guest % clusters_per_chunk)});
+        const std::size_t target = guest / clusters_per_chunk;
+        arrivals_[target].push_back({static_cast<std::uint32_t>(k),
+                                     static_cast<std::uint32_t>(place++),
+                                     static_cast<std::uint32_t>(guest % clusters_per_chunk)});
+        add_source(target, k);
       }
     }
+    // A vector that a sweep loads at the end of its chunk may reach into the next, unused.
+    for (std::size_t k = 1; k < chunks; ++k) add_source(k, k - 1);
   }
 
   [[nodiscard]] T* of(std::size_t chunk) const { return of_chunks_[chunk]; }
@@ -39,6 +45,10 @@ class ChunkSums {
   /// What others have for the clusters of `chunk`, in the order of chunks.
   [[nodiscard]] std::span<const Arrival> arrivals(std::size_t chunk) const {
     return arrivals_[chunk];
+  }
+  /// The chunks, all of them earlier, whose sweeps read particles of `chunk` or have sums for them.
+  [[nodiscard]] std::span<const std::uint32_t> sources(std::size_t chunk) const {
+    return sources_[chunk];
   }
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
@@ -48,9 +58,16 @@ class ChunkSums {
   }
 
  private:
+  void add_source(std::size_t chunk, std::size_t source) {
+    std::vector<std::uint32_t>& sources = sources_[chunk];
+    const auto one = static_cast<std::uint32_t>(source);
+    if (sources.empty() || sources.back() != one) sources.push_back(one);
+  }
+
   std::vector<AlignedArray<T>> sums_;
   std::vector<T*> of_chunks_;
   std::vector<std::vector<Arrival>> arrivals_;
+  std::vector<std::vector<std::uint32_t>> sources_;
 };
 
 }  // namespace sluice

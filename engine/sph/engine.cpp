@@ -94,6 +94,7 @@ TermConstants<T> term_constants(const Method& m, double tile_size) {
 /// Adds the wall time of its life to one pass.
 class PassClock {
  public:
+  using Clock = std::chrono::steady_clock;
   PassClock(std::array<double, kPassCount>& seconds, Pass pass)
       : seconds_(seconds[static_cast<std::size_t>(pass)]), start_(Clock::now()) {}
   ~PassClock() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -101,7 +102,6 @@ class PassClock {
   PassClock& operator=(const PassClock&) = delete;
 
  private:
-  using Clock = std::chrono::steady_clock;
   double& seconds_;
   Clock::time_point start_;
 };
@@ -144,8 +144,15 @@ class Engine final : public Solver::Impl {
   [[nodiscard]] bool order_due() const;
   void sum_wall_pressure();
   void reinitialise();
-  void sum_pairs(typename Sweeps<T>::Sweep loop);
-  void run_sweep(typename Sweeps<T>::Sweep loop);
+  void sweep_chunk(typename Sweeps<T>::Sweep loop, std::size_t chunk);
+  /// Whose time a sweep is, and what is done with its sums.
+  struct SweepPasses {
+    Pass sums;
+    Pass update;
+  };
+  template <class Body>
+  Motion sweep(typename Sweeps<T>::Sweep loop, const SumBlocks& blocks, const Body& body,
+               SweepPasses passes = {Pass::pair_sums, Pass::update});
   Rates<T> gather(const ParticleSpan& chunk, const SumBlocks& blocks);
   [[nodiscard]] Rates<T> rates_of(const ParticleSpan& chunk, const SumBlocks& blocks) const;
   void measure();
@@ -177,7 +184,6 @@ class Engine final : public Solver::Impl {
   PairArrays<T> pairs_;
   PairScales scales_;
   Tracks<T> tracks_;
-  std::vector<double> origin_x_, origin_y_;  // per cluster
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
   ChunkSums<T> sums_;     // of fluid_to_fluid_
   bool outside_ = false;  // a particle is to be retired
@@ -243,10 +249,10 @@ void Engine<T>::load(const SolverState& state) {
 /// The acceleration that the first half kick needs.
 template <typename T>
 void Engine<T>::start_kick_drift_kick() {
-  run_sweep(sweeps_.acceleration);
-  for_chunks([&](const ParticleSpan& p, Motion&) {
-    sweeps_.updates.kick(p, gather(p, kAccelerationSums), 0.0);
-  });
+  sweep(sweeps_.acceleration, kAccelerationSums,
+        [&](const ParticleSpan& p, const Rates<T>& rates, Motion&) {
+          sweeps_.updates.kick(p, rates, 0.0);
+        });
 }
 
 template <typename T>
@@ -308,8 +314,9 @@ PairScales Engine<T>::scales() const {
     k.hydrostatic = method.gravity / (method.sound_speed * method.sound_speed);
     k.hydrostatic_middle = k.hydrostatic.dot(method.domain.min + method.domain.max) / 2.0;
   }
-  k.origin_x = origin_x_.data();
-  k.origin_y = origin_y_.data();
+  k.tile = bounds.tile.data();
+  k.tile_origin = grid_.tile_origin();
+  k.tile_size = grid_.tile_size();
   return k;
 }
 
@@ -404,20 +411,11 @@ void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
   bounds.assign_tiles(team_, grid_, layout, particles.x_sorted.data(), particles.y_sorted.data(),
                       particles.id.data());
-  resize_closely(origin_x_, layout.clusters());
-  resize_closely(origin_y_, layout.clusters());
   scales_ = scales();
   pairs_.resize(slots);
   if (keeps_diffused(method)) pairs_.diffused.resize(slots);
   tracks_.resize(slots);
-  for_chunks([&](const ParticleSpan& p, Motion&) {
-    for (std::size_t c = p.begin / kCluster; c < p.end / kCluster; ++c) {
-      const Vec origin = grid_.tile_center(bounds.tile[c]);
-      origin_x_[c] = origin.x();
-      origin_y_[c] = origin.y();
-    }
-    write_pairs(p);
-  });
+  for_chunks([&](const ParticleSpan& p, Motion&) { write_pairs(p); });
   make_lists();
 }
 
@@ -453,26 +451,57 @@ void Engine<T>::count_neighbours() {
 // Passes.
 
 template <typename T>
-void Engine<T>::sum_pairs(typename Sweeps<T>::Sweep loop) {
-  const PassClock clock(pass_seconds, Pass::pair_sums);
-  run_sweep(loop);
+void Engine<T>::sweep_chunk(typename Sweeps<T>::Sweep loop, std::size_t chunk) {
+  SweepTask<T> task;
+  task.self = pairs_.view();
+  task.fluid = task.self;
+  task.wall = walls_.view();
+  task.to_fluid = &fluid_to_fluid_.chunks[chunk];
+  task.to_wall = !walls_.empty() ? &fluid_to_wall_.chunks[chunk] : nullptr;
+  task.first_cluster = layout.chunk_begin(chunk);
+  task.clusters = layout.chunk_begin(chunk + 1) - task.first_cluster;
+  task.constants = &constants_;
+  task.sums = sums_.of(chunk);
+  loop(task);
 }
 
+/// Sums over the pairs, and calls body(chunk, rates, seen) for the span of every chunk with what
+/// was summed for it. A chunk may be changed as soon as all sweeps that read it are done, for each
+/// pair of clusters is in the list of the earlier one's chunk.
 template <typename T>
-void Engine<T>::run_sweep(typename Sweeps<T>::Sweep loop) {
-  team_.run(layout.chunks(), [&](std::size_t chunk) {
-    SweepTask<T> task;
-    task.self = pairs_.view();
-    task.fluid = task.self;
-    task.wall = walls_.view();
-    task.to_fluid = &fluid_to_fluid_.chunks[chunk];
-    task.to_wall = !walls_.empty() ? &fluid_to_wall_.chunks[chunk] : nullptr;
-    task.first_cluster = layout.chunk_begin(chunk);
-    task.clusters = layout.chunk_begin(chunk + 1) - task.first_cluster;
-    task.constants = &constants_;
-    task.sums = sums_.of(chunk);
-    loop(task);
-  });
+template <class Body>
+Motion Engine<T>::sweep(typename Sweeps<T>::Sweep loop, const SumBlocks& blocks, const Body& body,
+                        SweepPasses passes) {
+  struct Work {
+    Motion seen;
+    std::array<double, kPassCount> seconds{};
+  };
+  const auto start = PassClock::Clock::now();
+  std::vector<Work> work(layout.chunks());
+  team_.run_both(
+      work.size(),
+      [&](std::size_t chunk) {
+        const PassClock clock(work[chunk].seconds, passes.sums);
+        sweep_chunk(loop, chunk);
+      },
+      [&](std::size_t chunk) { return sums_.sources(chunk); },
+      [&](std::size_t chunk) {
+        const PassClock clock(work[chunk].seconds, passes.update);
+        const ParticleSpan p = span(chunk);
+        body(p, gather(p, blocks), work[chunk].seen);
+      });
+  Work all;
+  for (const Work& one : work) {
+    all.seen.merge(one.seen);
+    for (std::size_t n = 0; n < kPassCount; ++n) all.seconds[n] += one.seconds[n];
+  }
+  // The time went by once, whatever the number of threads.
+  const double passed = std::chrono::duration<double>(PassClock::Clock::now() - start).count();
+  const double worked = std::accumulate(all.seconds.begin(), all.seconds.end(), 0.0);
+  for (std::size_t n = 0; n < kPassCount && worked > 0.0; ++n) {
+    pass_seconds[n] += passed * all.seconds[n] / worked;
+  }
+  return all.seen;
 }
 
 /// Adds up, in a fixed order, what a sweep left for the particles of a chunk.
@@ -511,13 +540,13 @@ bool Engine<T>::reinitialisation_due(std::uint64_t step) const {
 
 template <typename T>
 void Engine<T>::reinitialise() {
-  const PassClock clock(pass_seconds, Pass::reinitialisation);
-  run_sweep(sweeps_.reinitialise);
-  for_chunks([&](const ParticleSpan& p, Motion&) {
-    sweeps_.updates.reinitialise(p, gather(p, kReinitialisationSums), method.reference_density);
-    sweeps_.updates.write_densities(p, scales_, pairs_);
-    if (pairs_.diffused.size() > 0) sweeps_.updates.write_places(p, scales_, pairs_);
-  });
+  sweep(sweeps_.reinitialise, kReinitialisationSums,
+        [&](const ParticleSpan& p, const Rates<T>& rates, Motion&) {
+          sweeps_.updates.reinitialise(p, rates, method.reference_density);
+          sweeps_.updates.write_densities(p, scales_, pairs_);
+          if (pairs_.diffused.size() > 0) sweeps_.updates.write_places(p, scales_, pairs_);
+        },
+        {Pass::reinitialisation, Pass::reinitialisation});
 }
 
 template <typename T>
@@ -596,10 +625,10 @@ void Engine<T>::step_leap_frog() {
     reinitialise();
   }
   sum_wall_pressure();
-  sum_pairs(sweeps_.density_and_acceleration);
-  const Motion forces = update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
-    sweeps_.updates.measure_rates(chunk, gather(chunk, kRateSums), seen);
-  });
+  const Motion forces = sweep(sweeps_.density_and_acceleration, kRateSums,
+                              [&](const ParticleSpan& chunk, const Rates<T>& rates, Motion& seen) {
+                                sweeps_.updates.measure_rates(chunk, rates, seen);
+                              });
   extremes.max_acceleration = std::sqrt(forces.acceleration_sq);
   const double last = time_step;
   choose_time_step();
@@ -635,33 +664,32 @@ void Engine<T>::step_kick_drift_kick() {
     });
   }));
   const bool shifting = shifting_due();
-  sum_pairs(shifting ? sweeps_.density_and_shift : sweeps_.density);
   const Shift shift = shifting ? shift_of_step() : Shift{};
   advance_tracks(0.5 * time_step);
-  keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
-    const Rates<T> rates = gather(chunk, shifting ? kDensityAndShiftingSums : kDensitySums);
-    for_blocks(chunk, [&](const ParticleSpan& p) {
-      sweeps_.updates.density_drift(p, rates, time_step);
-      if (shifting) sweeps_.updates.shift(p, rates, shift);
-      sweeps_.updates.write_places(p, scales_, pairs_);
-      sweeps_.updates.write_densities(p, scales_, pairs_);
-      compare_with_tracks(p, seen);
-    });
-  }));
+  keep_lists(sweep(shifting ? sweeps_.density_and_shift : sweeps_.density,
+                   shifting ? kDensityAndShiftingSums : kDensitySums,
+                   [&](const ParticleSpan& chunk, const Rates<T>& rates, Motion& seen) {
+                     for_blocks(chunk, [&](const ParticleSpan& p) {
+                       sweeps_.updates.density_drift(p, rates, time_step);
+                       if (shifting) sweeps_.updates.shift(p, rates, shift);
+                       sweeps_.updates.write_places(p, scales_, pairs_);
+                       sweeps_.updates.write_densities(p, scales_, pairs_);
+                       compare_with_tracks(p, seen);
+                     });
+                   }));
   sum_wall_pressure();
   if (reinitialisation_due(step_count + 1)) {
     reinitialise();
     sum_wall_pressure();
   }
-  sum_pairs(sweeps_.acceleration);
-  note_motion(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
-    const Rates<T> rates = gather(chunk, kAccelerationSums);
-    for_blocks(chunk, [&](const ParticleSpan& p) {
-      sweeps_.updates.kick(p, rates, time_step);
-      sweeps_.updates.measure(p, method, seen);
-      sweeps_.updates.measure_acceleration(p, seen);
-    });
-  }));
+  note_motion(sweep(sweeps_.acceleration, kAccelerationSums,
+                    [&](const ParticleSpan& chunk, const Rates<T>& rates, Motion& seen) {
+                      for_blocks(chunk, [&](const ParticleSpan& p) {
+                        sweeps_.updates.kick(p, rates, time_step);
+                        sweeps_.updates.measure(p, method, seen);
+                        sweeps_.updates.measure_acceleration(p, seen);
+                      });
+                    }));
   time += time_step;
   ++step_count;
   walls_.lift(method, time);
@@ -699,7 +727,7 @@ std::size_t Engine<T>::memory_bytes() const {
   std::size_t bytes = pairs_.bytes() + walls_.bytes() + tracks_.bytes() + sums_.bytes() +
                       fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
-  return bytes + bounds.bytes() + (origin_x_.capacity() + origin_y_.capacity()) * sizeof(double);
+  return bytes + bounds.bytes();
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr std::size_t kLeastChunks = 16;
 constexpr std::size_t kManyChunks = 64;  // where chunks may grow beyond kChunk
 constexpr std::size_t kLeastChunk = 32;  // clusters
 constexpr std::size_t kChunk = 512;
-constexpr std::size_t kMostChunk = 2048;
+constexpr std::size_t kMostChunk = 2560;
 
 /// Clusters per chunk of so many clusters.
 std::size_t chunk_of(std::size_t clusters) {

@@ -44,6 +44,8 @@ class Grid {
   [[nodiscard]] Tile tile(const Vec& position) const;
   [[nodiscard]] Vec tile_center(Tile tile) const;
   [[nodiscard]] double tile_size() const { return tile_size_; }
+  /// A corner of the tile of column and row 0, m.
+  [[nodiscard]] const Vec& tile_origin() const { return tile_origin_; }
 
  private:
   static std::size_t cell(double distance, double size, std::size_t count);

@@ -204,9 +204,10 @@ void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<
     PairList::Chunk& chunk = list.chunks[task];
     const std::size_t first = self.layout.chunk_begin(task);
     const std::size_t count = self.layout.chunk_begin(task + 1) - first;
-    chunk.entries.clear();
     chunk.begin.assign(count + 1, 0);
 
+    // The thread's own, so that a chunk's list is no longer than what it holds.
+    thread_local std::vector<std::uint32_t> entries;
     std::vector<std::uint32_t> candidates;
     StripSearch search(other.layout, other.bounds, static_cast<float>(range.cut_off));
     const ClusterBounds& bounds = self.bounds;
@@ -222,13 +223,14 @@ void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<
         search.start(bounds.strip_y_min[s], bounds.strip_y_max[s], mutual ? s : 0);
       }
       const std::size_t found = search.collect(bounds, c, mutual ? c : 0, candidates);
-      resize_closely(chunk.entries, chunk.begin[n] + found);
+      if (entries.size() < chunk.begin[n] + found) entries.resize(2 * (chunk.begin[n] + found));
       const std::size_t kept =
           sweeps.prune({self.tracks, other.tracks, range.leeway, range.cut_off, range.tile_size, c,
-                        candidates.data(), found, chunk.entries.data() + chunk.begin[n]});
+                        candidates.data(), found, entries.data() + chunk.begin[n]});
       chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
-      chunk.entries.resize(chunk.begin[n + 1]);
     }
+    resize_closely(chunk.entries, chunk.begin.back());
+    std::copy_n(entries.begin(), chunk.begin.back(), chunk.entries.begin());
     if (mutual) assign_places(first, count, clusters, chunk);
   });
 }

@@ -11,13 +11,16 @@ namespace sluice {
 /// Particles per cluster: pair sums run cluster against cluster.
 inline constexpr std::size_t kCluster = 4;
 
+/// Room for a little more than `size`: the number of slots changes with every order.
+[[nodiscard]] inline std::size_t with_slack(std::size_t size) { return size + size / 128; }
+
 /// A growing aligned array whose tail may be read, not used, one vector past the end.
 template <typename T>
 class AlignedArray {
  public:
   void resize(std::size_t size) {
     if (size > capacity_) {
-      capacity_ = size + size / 32;
+      capacity_ = with_slack(size);
       data_ = hwy::AllocateAligned<T>(capacity_ + kTail);
       std::fill(data_.get(), data_.get() + capacity_ + kTail, T{});
     }
@@ -40,7 +43,7 @@ class AlignedArray {
 /// Resizes a vector with little to spare; left to itself it grows to twice its size.
 template <typename Vector>
 void resize_closely(Vector& values, std::size_t size) {
-  if (values.capacity() < size) values.reserve(size + size / 32);
+  if (values.capacity() < size) values.reserve(with_slack(size));
   values.resize(size);
 }
 

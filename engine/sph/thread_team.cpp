@@ -22,7 +22,7 @@ void wait_while(const std::atomic<std::uint64_t>& word, std::uint64_t old) {
 
 ThreadTeam::ThreadTeam(int threads) {
   const auto helpers = static_cast<std::size_t>(threads > 1 ? threads - 1 : 0);
-  shares_ = std::make_unique<Share[]>(helpers + 1);
+  shares_ = std::make_unique<Share[]>(2 * (helpers + 1));
   helpers_.reserve(helpers);
   for (std::size_t i = 0; i < helpers; ++i) helpers_.emplace_back([this, i] { help(i + 1); });
 }
@@ -34,12 +34,16 @@ ThreadTeam::~ThreadTeam() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
-void ThreadTeam::run_shared(std::size_t tasks, Call call, const void* body) {
+void ThreadTeam::run_shared(std::size_t rounds, std::size_t tasks, Call call, const void* body) {
   const std::size_t members = helpers_.size() + 1;
-  for (std::size_t i = 0; i < members; ++i) {
-    shares_[i].next.store(tasks * i / members, std::memory_order_relaxed);
-    shares_[i].end = tasks * (i + 1) / members;
+  for (std::size_t n = 0; n < rounds * members; ++n) {
+    const std::size_t before = n / members * tasks;
+    const std::size_t i = n % members;
+    shares_[n].next.store(before + tasks * i / members, std::memory_order_relaxed);
+    shares_[n].begin = shares_[n].next.load(std::memory_order_relaxed);
+    shares_[n].end = before + tasks * (i + 1) / members;
   }
+  rounds_ = rounds;
   call_ = call;
   body_ = body;
   const std::uint64_t epoch = state_.load(std::memory_order_relaxed) + kEpoch;
@@ -58,12 +62,12 @@ void ThreadTeam::run_shared(std::size_t tasks, Call call, const void* body) {
 
 void ThreadTeam::work(std::size_t self) {
   const std::size_t members = helpers_.size() + 1;
-  for (std::size_t k = 0; k < members; ++k) {
-    Share& share = shares_[(self + k) % members];
+  for (std::size_t n = 0; n < rounds_ * members; ++n) {
+    Share& share = shares_[n / members * members + (self + n) % members];
     for (;;) {
       const std::size_t task = share.next.fetch_add(1, std::memory_order_relaxed);
       if (task >= share.end) break;
-      call_(body_, task);
+      call_(body_, n < members ? task : share.rotated(task));
     }
   }
 }
@@ -83,6 +87,23 @@ void ThreadTeam::help(std::size_t self) {
       state_.notify_all();
     }
   }
+}
+
+void ThreadTeam::reset_firsts(std::size_t tasks) {
+  if (tasks > first_count_) {
+    first_done_ = std::make_unique<std::atomic<std::uint64_t>[]>(tasks);
+    first_count_ = tasks;
+  }
+  for (std::size_t n = 0; n < tasks; ++n) first_done_[n].store(0, std::memory_order_relaxed);
+}
+
+void ThreadTeam::finish_first(std::size_t task) {
+  first_done_[task].store(1, std::memory_order_release);
+  first_done_[task].notify_all();
+}
+
+void ThreadTeam::await_first(std::size_t task) const {
+  while (first_done_[task].load(std::memory_order_acquire) == 0) wait_while(first_done_[task], 0);
 }
 
 }  // namespace sluice

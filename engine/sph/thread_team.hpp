@@ -32,20 +32,60 @@ class ThreadTeam {
       return;
     }
     run_shared(
-        tasks, [](const void* b, std::size_t task) { (*static_cast<const Body*>(b))(task); },
+        1, tasks, [](const void* b, std::size_t task) { (*static_cast<const Body*>(b))(task); },
         &body);
+  }
+
+  /// Calls first(task) for each task in [0, tasks), and then second(task) for each, as soon as
+  /// first() is done for it and for those that needs(task) lists: whoever has no first left to
+  /// take need not wait for the last of them. Returns when all are done. Nothing may throw.
+  template <class First, class Needs, class Second>
+  void run_both(std::size_t tasks, const First& first, const Needs& needs, const Second& second) {
+    if (helpers_.empty() || tasks < 2) {
+      for (std::size_t task = 0; task < tasks; ++task) first(task);
+      for (std::size_t task = 0; task < tasks; ++task) second(task);
+      return;
+    }
+    reset_firsts(tasks);
+    const auto body = [&](std::size_t call) {
+      if (call < tasks) {
+        first(call);
+        finish_first(call);
+        return;
+      }
+      // Firsts are taken before any second: those that are not done are at work.
+      const std::size_t task = call - tasks;
+      await_first(task);
+      for (const std::size_t other : needs(task)) await_first(other);
+      second(task);
+    };
+    using Body = decltype(body);
+    run_shared(
+        2, tasks, [](const void* b, std::size_t call) { (*static_cast<Body*>(b))(call); }, &body);
   }
 
  private:
   using Call = void (*)(const void* body, std::size_t task);
   struct alignas(64) Share {
     std::atomic<std::size_t> next{0};
+    std::size_t begin = 0;
     std::size_t end = 0;
+    /// The share's tasks from its second to its first.
+    [[nodiscard]] std::size_t rotated(std::size_t task) const {
+      return task + 1 < end ? task + 1 : begin;
+    }
   };
 
-  void run_shared(std::size_t tasks, Call call, const void* body);
+  /// Calls call(body, n) for n in [0, rounds * tasks): each thread begins a round when nothing is
+  /// left to take of the one before. The first of a share needs what the thread before does last,
+  /// and so is last in a second round.
+  void run_shared(std::size_t rounds, std::size_t tasks, Call call, const void* body);
   void work(std::size_t self);
   void help(std::size_t self);
+
+  void reset_firsts(std::size_t tasks);
+  void finish_first(std::size_t task);
+  void await_first(std::size_t task) const;
 
   // State word: epoch in the upper half, then one bit "open", then the number of helpers at work.
   static constexpr std::uint64_t kOpen = 1ULL << 16;
@@ -56,7 +96,10 @@ class ThreadTeam {
   std::atomic<bool> stop_{false};
   Call call_ = nullptr;
   const void* body_ = nullptr;
-  std::unique_ptr<Share[]> shares_;
+  std::size_t rounds_ = 1;
+  std::unique_ptr<Share[]> shares_;                           // of each round
+  std::unique_ptr<std::atomic<std::uint64_t>[]> first_done_;  // of each task
+  std::size_t first_count_ = 0;
   std::vector<std::thread> helpers_;
 };
 

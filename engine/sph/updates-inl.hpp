@@ -155,17 +155,17 @@ void gather(std::span<const Arrival> arrivals, const T* const* sums_of_chunks, s
   }
 }
 
-/// to = (from - origin of the cluster) * scale
-template <typename T>
+/// to = (from - origin(cluster)) * scale
+template <typename T, class Origin>
 HWY_INLINE void write_relative(const ParticleSpan& p, T* HWY_RESTRICT to,
-                               const double* HWY_RESTRICT from, const double* HWY_RESTRICT origin,
+                               const double* HWY_RESTRICT from, const Origin& origin,
                                double scale) {
   using D = hn::CappedTag<double, kCluster>;
   const D d;
   const hn::Rebind<T, D> d_out;
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto value =
-        (hn::LoadU(d, from + s) - hn::Set(d, origin[s / kCluster])) * hn::Set(d, scale);
+        (hn::LoadU(d, from + s) - hn::Set(d, origin(s / kCluster))) * hn::Set(d, scale);
     if constexpr (std::is_same_v<T, double>) {
       hn::StoreU(value, d_out, to + s);
     } else {
@@ -176,8 +176,15 @@ HWY_INLINE void write_relative(const ParticleSpan& p, T* HWY_RESTRICT to,
 
 template <typename T>
 void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
-  write_relative(p, out.x.data(), p.x, k.origin_x, k.inverse_length);
-  write_relative(p, out.y.data(), p.y, k.origin_y, k.inverse_length);
+  // As Grid::tile_center().
+  const auto center_x = [&](std::size_t cluster) HWY_ATTR {
+    return k.tile_origin.x() + k.tile_size * (k.tile[cluster].column + 0.5);
+  };
+  const auto center_y = [&](std::size_t cluster) HWY_ATTR {
+    return k.tile_origin.y() + k.tile_size * (k.tile[cluster].row + 0.5);
+  };
+  write_relative(p, out.x.data(), p.x, center_x, k.inverse_length);
+  write_relative(p, out.y.data(), p.y, center_y, k.inverse_length);
   if (out.diffused.size() == 0) return;
   T* HWY_RESTRICT diffused = out.diffused.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {

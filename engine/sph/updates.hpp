@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/sph/layout.hpp"
 #include "engine/sph/method.hpp"
 #include "engine/sph/pair_arrays.hpp"
 #include "engine/sph/particles.hpp"
@@ -82,8 +83,9 @@ struct PairScales {
                                     ///< zero for Molteni-Colagrossi
   double hydrostatic_middle = 0.0;  ///< hydrostatic . x in the middle of the domain: taken off psi,
                                     ///< so that its size does not depend on where the scene lies
-  const double* origin_x = nullptr;  ///< per cluster, m
-  const double* origin_y = nullptr;
+  const Grid::Tile* tile = nullptr;  ///< per cluster; its centre is the origin of the places
+  Vec tile_origin = Vec::Zero();     ///< a corner of the tile of column and row 0, m
+  double tile_size = 0.0;            ///< m
 };
 
 /// A point to sum around.

@@ -144,7 +144,7 @@ TEST(SensorArray, KeepsSensorsOfOneKindAndIntervalInOneTable) {
   std::vector<std::vector<std::string>> names;
   for (const SampleTable& table : array.empty_tables()) names.push_back(table.names);
   const std::vector<std::vector<std::string>> expected{
-      {"low", "high"}, {"energy"}, {"often"}, {"height"}, {"first"}, {"second"}, {"energy again"}};
+      {"low", "high"}, {"energy", "energy again"}, {"often"}, {"height"}, {"first"}, {"second"}};
   EXPECT_EQ(names, expected);
 
   std::vector<SampleTable> tables = array.empty_tables();

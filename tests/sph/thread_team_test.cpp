@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -21,6 +23,45 @@ TEST(ThreadTeam, CallsEveryTaskExactlyOnce) {
       team.run(tasks, [&](std::size_t task) { ++calls[task]; });
       for (std::size_t task = 0; task < tasks; ++task) {
         ASSERT_EQ(calls[task], 1) << threads << " threads, task " << task << " of " << tasks;
+      }
+    }
+  }
+}
+
+TEST(ThreadTeam, CallsBothOfEveryTaskExactlyOnceAndNoSecondBeforeTheFirstsItNeeds) {
+  for (const int threads : {1, 2, 3, 5, 8}) {
+    ThreadTeam team(threads);
+    for (const std::size_t tasks : {0, 1, 2, 3, 4, 7, 16, 65, 1000, 3}) {
+      for (const std::size_t reach : {0, 1, 3}) {
+        // Not atomic: what is read too early is a race that the thread sanitizer sees.
+        std::vector<int> firsts(tasks, 0);
+        std::vector<int> seconds(tasks, 0);
+        std::vector<std::size_t> found(tasks, 0);
+        const auto needs = [&](std::size_t task) {
+          std::vector<std::uint32_t> earlier;
+          for (std::size_t back = 1; back <= std::min(reach, task); ++back) {
+            earlier.push_back(static_cast<std::uint32_t>(task - back));
+          }
+          return earlier;
+        };
+        team.run_both(
+            tasks,
+            [&](std::size_t task) {
+              if (task % 7 == 3) std::this_thread::sleep_for(std::chrono::microseconds(50));
+              ++firsts[task];
+            },
+            needs,
+            [&](std::size_t task) {
+              for (const std::uint32_t other : needs(task)) {
+                found[task] += static_cast<std::size_t>(firsts[other]);
+              }
+              ++seconds[task];
+            });
+        for (std::size_t task = 0; task < tasks; ++task) {
+          ASSERT_EQ(firsts[task], 1) << threads << " threads, task " << task << " of " << tasks;
+          ASSERT_EQ(seconds[task], 1) << threads << " threads, task " << task << " of " << tasks;
+          ASSERT_EQ(found[task], std::min(reach, task));
+        }
       }
     }
   }
