@@ -43,8 +43,8 @@ def main():
                 with open(os.path.join(arguments.scenes, name), encoding="utf-8") as stream:
                     scene = resized(json.load(stream), particles)
                 scene["numerics"]["precision"] = precision
-                _, usage = measured(arguments.sluice, scene,
-                                    ["--stop-after-step", str(arguments.steps)])
+                _, usage, _ = measured(arguments.sluice, scene,
+                                       ["--stop-after-step", str(arguments.steps)])
                 most = 1024 * usage.ru_maxrss
                 plan = planned(arguments.sluice, scene)
                 print(f"{re.sub('.json$', '', name):<16} {precision:<9} {particles:>9} "

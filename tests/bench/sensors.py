@@ -3,11 +3,11 @@
 Usage: sensors.py SLUICE SCENES [--sensors N] [--interval S] [--end S] [--repeat R] [--threads T]
 
 The recommended dam break without frames to END model seconds, with no sensor and with N pressure
-sensors in the column, one sample each INTERVAL seconds. The cost is what a process spends beside
-its engine's passes (sampling, series, checkpoints, digests, report), over what it spends in them,
+sensors in the column, one sample each INTERVAL seconds. The cost is the time that a process takes
+beside its engine's passes (sampling, series, checkpoints, digests, report), over the time in them,
 with sensors less without: the median of R runs each, taken in turns. Both parts of such a ratio are
-of one run, so that a machine that changes its speed between runs does not spoil it. Then the shares
-of the run's own account.
+of one run and one clock, so that a machine that changes its speed between runs, and other work on
+it, do not spoil it. Then the shares of the run's own account.
 """
 
 import argparse
@@ -38,12 +38,11 @@ def scene_with(scenes, arguments, count):
 
 def run(arguments, scene):
     """Time beside the engine's passes over the time in them, and the shares of the account."""
-    outcome, usage = measured(arguments.sluice, scene, ["--threads", str(arguments.threads)])
+    outcome, _, seconds = measured(arguments.sluice, scene, ["--threads", str(arguments.threads)])
     passes = outcome["this_attempt"]["passes"]
     engine = sum(line["seconds"] for line in passes if line["name"] in ENGINE)
-    used = usage.ru_utime + usage.ru_stime
     shares = {line["name"]: line["share"] for line in passes}
-    return used / (arguments.threads * engine) - 1.0, shares
+    return seconds / engine - 1.0, shares
 
 
 def main():

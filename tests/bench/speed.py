@@ -23,6 +23,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from concurrent.futures import ThreadPoolExecutor
 
 PASSES = ["sort", "wall_pressure", "pair_sums", "reinitialisation", "update", "sample"]
@@ -61,7 +62,7 @@ def resized(scene, particles):
 
 
 def measured(program, scene, options):
-    """Runs a scene in a folder of its own: its outcome, and what the process used."""
+    """Runs a scene in a folder of its own: its outcome, what the process used, and how long it took."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.json")
         job = os.path.join(folder, "job")
@@ -69,14 +70,16 @@ def measured(program, scene, options):
             json.dump(scene, out)
         command = [program, "run", path, "--folder", job, "--progress", "none", *options]
         with open(os.path.join(folder, "said"), "w+", encoding="utf-8") as said:
+            start = time.perf_counter()
             child = subprocess.Popen(command, stdout=said, stderr=said)
             _, status, usage = os.wait4(child.pid, 0)
+            seconds = time.perf_counter() - start
             child.returncode = os.waitstatus_to_exitcode(status)
             if child.returncode not in (0, 85):
                 said.seek(0)
                 sys.exit(f"{' '.join(command)} ended with {child.returncode}: {said.read()}")
         with open(os.path.join(job, "outcome.json"), encoding="utf-8") as stream:
-            return json.load(stream), usage
+            return json.load(stream), usage, seconds
 
 
 def run(program, scene, threads, seconds, simd):
