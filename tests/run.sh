@@ -13,7 +13,8 @@
 #             sanitizer; by name only, for the time of its build
 #   tidy      clang-tidy finds nothing in engine/, service/ and cli/; by name only, for its time
 #
-# Builds are kept in build/release, build/asan and build/tsan, so that a second run is quick.
+# Builds are kept in build/release, build/asan and build/tsan, so that a second run is quick; tidy
+# configures build/debug.
 # Jobs side by side: SLUICE_JOBS, else the number of cores.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -23,7 +24,7 @@ steps=("$@")
 for step in "${steps[@]}"; do
   case "$step" in
     release | format | tidy | asan | tsan) ;;
-    -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "run.sh: unknown step '$step'; try --help" >&2; exit 2 ;;
   esac
 done

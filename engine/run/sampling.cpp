@@ -255,6 +255,7 @@ void SensorArray::sample(const Solver& solver, std::vector<SampleTable>& tables)
       pieces.push_back({rows.size() - 1, i, std::min(i + at_once, count)});
     }
   }
+  if (rows.empty()) return;
   solver.for_each(pieces.size(), [&](std::size_t n) {
     fill(rows[pieces[n].row], solver, pieces[n].begin, pieces[n].end);
   });

@@ -54,6 +54,7 @@ class ChunkSums {
     std::size_t sum = 0;
     for (const auto& sums : sums_) sum += sums.bytes();
     for (const auto& arrivals : arrivals_) sum += arrivals.capacity() * sizeof(Arrival);
+    for (const auto& sources : sources_) sum += sources.capacity() * sizeof(std::uint32_t);
     return sum;
   }
 

@@ -205,6 +205,7 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
   simd_target = sweeps_.target;
 
   load(state);
+  pass_seconds = {};  // of steps alone
 }
 
 template <typename T>
@@ -386,13 +387,14 @@ void Engine<T>::retire(const std::vector<std::uint32_t>& slots) {
 template <typename T>
 void Engine<T>::reorder(Order order) {
   const Layout& next = order.layout;
+  std::vector<double> moved;  // each field goes where the one before was
   for (const Field& field : kFields) {
     if (!carries(method.integrator, field)) continue;
     std::vector<double>& values = particles.*field.member;
     double empty = 0.0;
     if (field.name == "id") empty = -1.0;
     const double scale = field.unit == "m" ? method.smoothing_length : 0.0;
-    std::vector<double> moved(next.slots());
+    resize_closely(moved, next.slots());
     team_.run(next.chunks(), [&](std::size_t chunk) {
       const std::size_t end = kCluster * next.chunk_begin(chunk + 1);
       for (std::size_t s = kCluster * next.chunk_begin(chunk); s < end; ++s) {
@@ -400,7 +402,7 @@ void Engine<T>::reorder(Order order) {
             order.source[s] != Order::kEmpty ? values[order.source[s]] : empty + scale * nowhere(s);
       }
     });
-    values = std::move(moved);
+    values.swap(moved);
   }
   layout = std::move(order.layout);
 }
@@ -430,12 +432,11 @@ void Engine<T>::make_lists() {
   const PairRange<T> range{static_cast<T>(method.support_ratio() + kListSlack),
                            constants_.tile_size, kLeeway<T>};
   const PairSet<T> fluid{layout, bounds, tracks_.view()};
-  build_pair_list(team_, sweeps_, range, fluid, fluid, fluid_to_fluid_);
-  if (!walls_.empty()) {
-    const PairSet<T> wall = walls_.set();
-    build_pair_list(team_, sweeps_, range, fluid, wall, fluid_to_wall_);
-    build_pair_list(team_, sweeps_, range, wall, fluid, wall_to_fluid_);
-  }
+  const PairSet<T> wall = walls_.set();
+  const std::array lists{NewPairList<T>{&fluid, &fluid, &fluid_to_fluid_},
+                         NewPairList<T>{&fluid, &wall, &fluid_to_wall_},
+                         NewPairList<T>{&wall, &fluid, &wall_to_fluid_}};
+  build_pair_lists(team_, sweeps_, range, std::span(lists).first(walls_.empty() ? 1 : 3));
   sums_.place(fluid_to_fluid_, layout.chunk,
               method.integrator == Integrator::modified_leap_frog ? kRateSums.stride
               : method.shifting                                   ? kDensityAndShiftingSums.stride

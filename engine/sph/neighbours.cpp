@@ -119,6 +119,46 @@ struct Extent {
   }
 };
 
+/// The list of the chunk `number`.
+template <typename T>
+void build_chunk(const Sweeps<T>& sweeps, const PairRange<T>& range, const NewPairList<T>& wanted,
+                 std::size_t number) {
+  const PairSet<T>& self = *wanted.self;
+  const PairSet<T>& other = *wanted.other;
+  const bool mutual = wanted.self == wanted.other;
+  PairList::Chunk& chunk = wanted.list->chunks[number];
+  const std::size_t first = self.layout.chunk_begin(number);
+  const std::size_t count = self.layout.chunk_begin(number + 1) - first;
+  chunk.begin.assign(count + 1, 0);
+
+  // The thread's own, so that a chunk's list is no longer than what it holds.
+  thread_local std::vector<std::uint32_t> entries;
+  std::vector<std::uint32_t> candidates;
+  StripSearch search(other.layout, other.bounds, static_cast<float>(range.cut_off));
+  const ClusterBounds& bounds = self.bounds;
+  const auto& strips = self.layout.strip_begin;
+  auto strip_end = strips.begin();  // end of the strip of the last cluster
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t c = first + n;
+    chunk.begin[n + 1] = chunk.begin[n];
+    if (c >= strips.back() || bounds.x_min[c] > bounds.x_max[c]) continue;  // empty
+    if (strip_end == strips.begin() || c >= *strip_end) {
+      strip_end = std::upper_bound(strips.begin(), strips.end(), static_cast<std::uint32_t>(c));
+      const auto s = static_cast<std::size_t>(strip_end - strips.begin()) - 1;
+      search.start(bounds.strip_y_min[s], bounds.strip_y_max[s], mutual ? s : 0);
+    }
+    const std::size_t found = search.collect(bounds, c, mutual ? c : 0, candidates);
+    if (entries.size() < chunk.begin[n] + found) entries.resize(2 * (chunk.begin[n] + found));
+    const std::size_t kept =
+        sweeps.prune({self.tracks, other.tracks, range.leeway, range.cut_off, range.tile_size, c,
+                      candidates.data(), found, entries.data() + chunk.begin[n]});
+    chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
+  }
+  resize_closely(chunk.entries, chunk.begin.back());
+  std::copy_n(entries.begin(), chunk.begin.back(), chunk.entries.begin());
+  if (mutual) assign_places(first, count, self.layout.clusters(), chunk);
+}
+
 }  // namespace
 
 float outwards(double value, double towards) {
@@ -194,50 +234,23 @@ std::size_t ClusterBounds::first_strip(float y) const {
 }
 
 template <typename T>
-void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,
-                     const PairSet<T>& self, const PairSet<T>& other, PairList& list) {
-  const bool mutual = &self == &other;
-  const std::size_t clusters = self.layout.clusters();
-  const std::size_t chunks = self.layout.chunks();
-  list.chunks.resize(chunks);
-  team.run(chunks, [&](std::size_t task) {
-    PairList::Chunk& chunk = list.chunks[task];
-    const std::size_t first = self.layout.chunk_begin(task);
-    const std::size_t count = self.layout.chunk_begin(task + 1) - first;
-    chunk.begin.assign(count + 1, 0);
-
-    // The thread's own, so that a chunk's list is no longer than what it holds.
-    thread_local std::vector<std::uint32_t> entries;
-    std::vector<std::uint32_t> candidates;
-    StripSearch search(other.layout, other.bounds, static_cast<float>(range.cut_off));
-    const ClusterBounds& bounds = self.bounds;
-    const auto& strips = self.layout.strip_begin;
-    auto strip_end = strips.begin();  // end of the strip of the last cluster
-    for (std::size_t n = 0; n < count; ++n) {
-      const std::size_t c = first + n;
-      chunk.begin[n + 1] = chunk.begin[n];
-      if (c >= strips.back() || bounds.x_min[c] > bounds.x_max[c]) continue;  // empty
-      if (strip_end == strips.begin() || c >= *strip_end) {
-        strip_end = std::upper_bound(strips.begin(), strips.end(), static_cast<std::uint32_t>(c));
-        const auto s = static_cast<std::size_t>(strip_end - strips.begin()) - 1;
-        search.start(bounds.strip_y_min[s], bounds.strip_y_max[s], mutual ? s : 0);
-      }
-      const std::size_t found = search.collect(bounds, c, mutual ? c : 0, candidates);
-      if (entries.size() < chunk.begin[n] + found) entries.resize(2 * (chunk.begin[n] + found));
-      const std::size_t kept =
-          sweeps.prune({self.tracks, other.tracks, range.leeway, range.cut_off, range.tile_size, c,
-                        candidates.data(), found, entries.data() + chunk.begin[n]});
-      chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
-    }
-    resize_closely(chunk.entries, chunk.begin.back());
-    std::copy_n(entries.begin(), chunk.begin.back(), chunk.entries.begin());
-    if (mutual) assign_places(first, count, clusters, chunk);
+void build_pair_lists(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,
+                      std::span<const NewPairList<T>> lists) {
+  std::size_t tasks = 0;
+  for (const NewPairList<T>& one : lists) {
+    one.list->chunks.resize(one.self->layout.chunks());
+    tasks += one.list->chunks.size();
+  }
+  team.run(tasks, [&](std::size_t task) {
+    auto wanted = lists.begin();
+    for (; task >= wanted->list->chunks.size(); ++wanted) task -= wanted->list->chunks.size();
+    build_chunk(sweeps, range, *wanted, task);
   });
 }
 
-template void build_pair_list<float>(ThreadTeam&, const Sweeps<float>&, const PairRange<float>&,
-                                     const PairSet<float>&, const PairSet<float>&, PairList&);
-template void build_pair_list<double>(ThreadTeam&, const Sweeps<double>&, const PairRange<double>&,
-                                      const PairSet<double>&, const PairSet<double>&, PairList&);
+template void build_pair_lists<float>(ThreadTeam&, const Sweeps<float>&, const PairRange<float>&,
+                                      std::span<const NewPairList<float>>);
+template void build_pair_lists<double>(ThreadTeam&, const Sweeps<double>&, const PairRange<double>&,
+                                       std::span<const NewPairList<double>>);
 
 }  // namespace sluice

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/sph/layout.hpp"
@@ -70,18 +71,27 @@ struct PairRange {
   Leeway<T> leeway;
 };
 
-/// For every cluster of `self` the clusters of `other` of which a particle may come within the
-/// cut-off, in memory order. When `self` and `other` are the same object the list is mutual:
-/// it holds those from the cluster itself on. Chunks are independent tasks of the team.
+/// A list to build: for every cluster of `self` the clusters of `other` of which a particle may
+/// come within the cut-off, in memory order. When `self` and `other` are the same object the list
+/// is mutual: it holds those from the cluster itself on.
 template <typename T>
-void build_pair_list(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,
-                     const PairSet<T>& self, const PairSet<T>& other, PairList& list);
+struct NewPairList {
+  const PairSet<T>* self;
+  const PairSet<T>* other;
+  PairList* list;
+};
 
-extern template void build_pair_list<float>(ThreadTeam&, const Sweeps<float>&,
-                                            const PairRange<float>&, const PairSet<float>&,
-                                            const PairSet<float>&, PairList&);
-extern template void build_pair_list<double>(ThreadTeam&, const Sweeps<double>&,
-                                             const PairRange<double>&, const PairSet<double>&,
-                                             const PairSet<double>&, PairList&);
+/// Builds lists. The chunks of all are independent tasks of the team: few of the fluid's are near a
+/// wall, so that the threads could not share the list of the two by itself.
+template <typename T>
+void build_pair_lists(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange<T>& range,
+                      std::span<const NewPairList<T>> lists);
+
+extern template void build_pair_lists<float>(ThreadTeam&, const Sweeps<float>&,
+                                             const PairRange<float>&,
+                                             std::span<const NewPairList<float>>);
+extern template void build_pair_lists<double>(ThreadTeam&, const Sweeps<double>&,
+                                              const PairRange<double>&,
+                                              std::span<const NewPairList<double>>);
 
 }  // namespace sluice

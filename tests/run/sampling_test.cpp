@@ -164,6 +164,11 @@ TEST(SensorArray, SamplesManySensorsToTheSameBitsWithAnyNumberOfThreads) {
     const SensorKind kind = i % 3 == 0 ? SensorKind::surface_height : SensorKind::pressure;
     scene.sensors.push_back(sensor_at("s" + std::to_string(i), kind, place, 0.0));
   }
+  const Vec wet(0.003, 0.003);
+  scene.sensors.push_back(sensor_at("energy", SensorKind::energy, wet, 0.0));
+  scene.sensors.push_back(sensor_at("wet at once", SensorKind::arrival, wet, 0.0));
+  scene.sensors.push_back(sensor_at("energy again", SensorKind::energy, wet, 0.0));
+  scene.sensors.push_back(sensor_at("never wet", SensorKind::arrival, Vec(10.0, 10.0), 0.0));
   const auto run = [&](int threads) {
     Simulation simulation(scene, {threads, ""});
     while (simulation.solver().step_count() < 40) simulation.step();
@@ -196,7 +201,11 @@ TEST(SensorArray, SamplesManySensorsToTheSameBitsWithAnyNumberOfThreads) {
   while (gone_on.solver().step_count() < 40) gone_on.step();
   EXPECT_EQ(physics_digest(gone_on.checkpoint()), digest);
 
-  for (std::size_t i = 0; i < series.size(); ++i) {
+  EXPECT_EQ(series[100].values.size(), 3U * 41U);
+  EXPECT_EQ(series[102].values, series[100].values);
+  EXPECT_EQ(series[101].size(), 1U);
+  EXPECT_EQ(series[103].size(), 0U);
+  for (std::size_t i = 0; i < 100; ++i) {
     const Sample alone = sample(scene, scene.sensors[i], one.solver());
     ASSERT_EQ(series[i].size(), 41U);
     EXPECT_EQ(series[i].weight.back(), alone.weight) << i;
