@@ -91,17 +91,16 @@ TermConstants<T> term_constants(const Method& m, double tile_size) {
   return k;
 }
 
-/// Adds the wall time of its life to one pass.
+/// Adds the wall time of its life to that of a pass.
 class PassClock {
  public:
-  using Clock = std::chrono::steady_clock;
-  PassClock(std::array<double, kPassCount>& seconds, Pass pass)
-      : seconds_(seconds[static_cast<std::size_t>(pass)]), start_(Clock::now()) {}
+  explicit PassClock(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
   ~PassClock() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
   PassClock(const PassClock&) = delete;
   PassClock& operator=(const PassClock&) = delete;
 
  private:
+  using Clock = std::chrono::steady_clock;
   double& seconds_;
   Clock::time_point start_;
 };
@@ -144,6 +143,7 @@ class Engine final : public Solver::Impl {
   [[nodiscard]] bool order_due() const;
   void sum_wall_pressure();
   void reinitialise();
+  double& seconds_of(Pass pass) { return pass_seconds[static_cast<std::size_t>(pass)]; }
   void sweep_chunk(typename Sweeps<T>::Sweep loop, std::size_t chunk);
   /// Whose time a sweep is, and what is done with its sums.
   struct SweepPasses {
@@ -290,7 +290,7 @@ Seen Engine<T>::for_chunks(const Body& body) {
 template <typename T>
 template <class Body>
 Motion Engine<T>::update_chunks(const Body& body) {
-  const PassClock clock(pass_seconds, Pass::update);
+  const PassClock clock(seconds_of(Pass::update));
   return for_chunks(body);
 }
 
@@ -315,9 +315,8 @@ PairScales Engine<T>::scales() const {
     k.hydrostatic = method.gravity / (method.sound_speed * method.sound_speed);
     k.hydrostatic_middle = k.hydrostatic.dot(method.domain.min + method.domain.max) / 2.0;
   }
+  k.grid = &grid_;
   k.tile = bounds.tile.data();
-  k.tile_origin = grid_.tile_origin();
-  k.tile_size = grid_.tile_size();
   return k;
 }
 
@@ -344,13 +343,13 @@ void Engine<T>::compare_with_tracks(const ParticleSpan& p, Motion& seen) {
 template <typename T>
 void Engine<T>::keep_lists(const Motion& seen) {
   if (!seen.strayed && tracks_.age <= kLeeway<double>.lifetime) return;
-  const PassClock clock(pass_seconds, Pass::sort);
+  const PassClock clock(seconds_of(Pass::sort));
   make_lists();
 }
 
 template <typename T>
 void Engine<T>::sort() {
-  const PassClock clock(pass_seconds, Pass::sort);
+  const PassClock clock(seconds_of(Pass::sort));
   std::vector<std::uint32_t> use;
   std::vector<std::uint32_t> gone;
   use.reserve(particle_count);
@@ -475,32 +474,36 @@ Motion Engine<T>::sweep(typename Sweeps<T>::Sweep loop, const SumBlocks& blocks,
                         SweepPasses passes) {
   struct Work {
     Motion seen;
-    std::array<double, kPassCount> seconds{};
+    double sums = 0.0;    // s
+    double update = 0.0;  // s
   };
-  const auto start = PassClock::Clock::now();
   std::vector<Work> work(layout.chunks());
-  team_.run_both(
-      work.size(),
-      [&](std::size_t chunk) {
-        const PassClock clock(work[chunk].seconds, passes.sums);
-        sweep_chunk(loop, chunk);
-      },
-      [&](std::size_t chunk) { return sums_.sources(chunk); },
-      [&](std::size_t chunk) {
-        const PassClock clock(work[chunk].seconds, passes.update);
-        const ParticleSpan p = span(chunk);
-        body(p, gather(p, blocks), work[chunk].seen);
-      });
+  double passed = 0.0;  // s, once whatever the number of threads
+  {
+    const PassClock whole(passed);
+    team_.run_both(
+        work.size(),
+        [&](std::size_t chunk) {
+          const PassClock clock(work[chunk].sums);
+          sweep_chunk(loop, chunk);
+        },
+        [&](std::size_t chunk) { return sums_.sources(chunk); },
+        [&](std::size_t chunk) {
+          const PassClock clock(work[chunk].update);
+          const ParticleSpan p = span(chunk);
+          body(p, gather(p, blocks), work[chunk].seen);
+        });
+  }
   Work all;
   for (const Work& one : work) {
     all.seen.merge(one.seen);
-    for (std::size_t n = 0; n < kPassCount; ++n) all.seconds[n] += one.seconds[n];
+    all.sums += one.sums;
+    all.update += one.update;
   }
-  // The time went by once, whatever the number of threads.
-  const double passed = std::chrono::duration<double>(PassClock::Clock::now() - start).count();
-  const double worked = std::accumulate(all.seconds.begin(), all.seconds.end(), 0.0);
-  for (std::size_t n = 0; n < kPassCount && worked > 0.0; ++n) {
-    pass_seconds[n] += passed * all.seconds[n] / worked;
+  const double worked = all.sums + all.update;
+  if (worked > 0.0) {
+    seconds_of(passes.sums) += passed * all.sums / worked;
+    seconds_of(passes.update) += passed * all.update / worked;
   }
   return all.seen;
 }
@@ -529,7 +532,7 @@ Rates<T> Engine<T>::rates_of(const ParticleSpan& chunk, const SumBlocks& blocks)
 template <typename T>
 void Engine<T>::sum_wall_pressure() {
   if (walls_.empty()) return;
-  const PassClock clock(pass_seconds, Pass::wall_pressure);
+  const PassClock clock(seconds_of(Pass::wall_pressure));
   walls_.sum_pressures(team_, method, sweeps_, constants_, pairs_.view(), wall_to_fluid_);
 }
 

@@ -64,10 +64,6 @@ Grid::Tile Grid::tile(const Vec& position) const {
   return {index(n.x()), index(n.y())};
 }
 
-Vec Grid::tile_center(Tile tile) const {
-  return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
-}
-
 Order sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const double> x,
                          std::span<const double> y, std::span<const double> id,
                          std::span<const std::uint32_t> use) {

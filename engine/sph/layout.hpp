@@ -42,10 +42,10 @@ class Grid {
     friend bool operator==(const Tile&, const Tile&) = default;
   };
   [[nodiscard]] Tile tile(const Vec& position) const;
-  [[nodiscard]] Vec tile_center(Tile tile) const;
+  [[nodiscard]] Vec tile_center(Tile tile) const {
+    return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
+  }
   [[nodiscard]] double tile_size() const { return tile_size_; }
-  /// A corner of the tile of column and row 0, m.
-  [[nodiscard]] const Vec& tile_origin() const { return tile_origin_; }
 
  private:
   static std::size_t cell(double distance, double size, std::size_t count);

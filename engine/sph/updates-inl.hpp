@@ -176,13 +176,10 @@ HWY_INLINE void write_relative(const ParticleSpan& p, T* HWY_RESTRICT to,
 
 template <typename T>
 void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
-  // As Grid::tile_center().
-  const auto center_x = [&](std::size_t cluster) HWY_ATTR {
-    return k.tile_origin.x() + k.tile_size * (k.tile[cluster].column + 0.5);
-  };
-  const auto center_y = [&](std::size_t cluster) HWY_ATTR {
-    return k.tile_origin.y() + k.tile_size * (k.tile[cluster].row + 0.5);
-  };
+  const auto center_x = [&](std::size_t cluster)
+                            HWY_ATTR { return k.grid->tile_center(k.tile[cluster]).x(); };
+  const auto center_y = [&](std::size_t cluster)
+                            HWY_ATTR { return k.grid->tile_center(k.tile[cluster]).y(); };
   write_relative(p, out.x.data(), p.x, center_x, k.inverse_length);
   write_relative(p, out.y.data(), p.y, center_y, k.inverse_length);
   if (out.diffused.size() == 0) return;

@@ -83,9 +83,8 @@ struct PairScales {
                                     ///< zero for Molteni-Colagrossi
   double hydrostatic_middle = 0.0;  ///< hydrostatic . x in the middle of the domain: taken off psi,
                                     ///< so that its size does not depend on where the scene lies
+  const Grid* grid = nullptr;
   const Grid::Tile* tile = nullptr;  ///< per cluster; its centre is the origin of the places
-  Vec tile_origin = Vec::Zero();     ///< a corner of the tile of column and row 0, m
-  double tile_size = 0.0;            ///< m
 };
 
 /// A point to sum around.
