@@ -1,7 +1,6 @@
 #include "engine/sph/dummy_particles.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace sluice {
@@ -14,14 +13,12 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
   std::vector<double> x(count_);
   std::vector<double> y(count_);
   std::vector<double> id(count_);
-  std::vector<std::uint32_t> all(count_);
-  std::iota(all.begin(), all.end(), 0U);
   for (std::size_t i = 0; i < count_; ++i) {
     x[i] = places[i].x();
     y[i] = places[i].y();
     id[i] = static_cast<double>(i);
   }
-  Order order = sort_into_clusters(team, grid, x, y, id, all);
+  Order order = sort_into_clusters(team, grid, x, y, id);
   layout_ = std::move(order.layout);
   source_ = std::move(order.source);
   const std::size_t slots = layout_.slots();
@@ -41,8 +38,6 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
     }
   }
   bounds_.assign_tiles(team, grid, layout_, slot_x.data(), slot_y.data(), slot_id.data());
-  bounds_.assign_boxes(team, layout_, method, kLeeway<double>,
-                       {slot_x.data(), slot_y.data(), nullptr, nullptr, slot_id.data()});
   // Empty slots lie on the other side than those of the fluid.
   const double h = method.smoothing_length;
   for (std::size_t s = 0; s < slots; ++s) {
@@ -52,6 +47,9 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
     arrays_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : -nowhere(s));
     arrays_.volume[s] = T{1};
   }
+  bounds_.resize(layout_);
+  bounds_.assign_boxes(0, layout_.clusters(), grid, h, set().tracks);
+  bounds_.assign_strips(team, layout_);
 }
 
 template <typename T>

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -23,6 +22,8 @@ constexpr double kListSlack = 1e-3;  // lists are longer by more than any roundi
 constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
+
+constexpr double kNobody = -1.0;  // id of an empty slot
 
 constexpr double kMostShift = 0.1;  // dx at a time
 
@@ -128,7 +129,7 @@ class Engine final : public Solver::Impl {
 
   // Order in memory.
   void sort();
-  void retire(const std::vector<std::uint32_t>& slots);
+  void retire();
   void reorder(Order order);
   void bind();
   void make_lists();
@@ -231,11 +232,8 @@ void Engine<T>::load(const SolverState& state) {
     }
   }
   // Sorting what is in order keeps it, so this also restores the slots of a state that was taken.
-  std::vector<std::uint32_t> all(particle_count);
-  std::iota(all.begin(), all.end(), 0U);
   particles = std::move(source);
-  reorder(
-      sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id, all));
+  reorder(sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id));
   walls_.lift(method, time);
   bind();
   // Between sorts nobody counts: a state that is gone on with must not be judged otherwise.
@@ -350,15 +348,9 @@ void Engine<T>::keep_lists(const Motion& seen) {
 template <typename T>
 void Engine<T>::sort() {
   const PassClock clock(seconds_of(Pass::sort));
-  std::vector<std::uint32_t> use;
-  std::vector<std::uint32_t> gone;
-  use.reserve(particle_count);
-  for (std::uint32_t s = 0; s < layout.slots(); ++s) {
-    if (particles.id[s] < 0.0) continue;
-    (method.keeps(particles.position(s)) ? use : gone).push_back(s);
-  }
-  retire(gone);
-  reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id, use));
+  const bool fewer = outside_;
+  if (fewer) retire();
+  reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id));
   particles.x_sorted = particles.x;
   particles.y_sorted = particles.y;
   bind();
@@ -367,20 +359,23 @@ void Engine<T>::sort() {
   // From here on all is as a solver finds it that goes on with this state: the next step sees wall
   // pressures summed in this order, and nothing of what left.
   if (method.integrator == Integrator::kick_drift_kick) sum_wall_pressure();
-  if (gone.empty()) return;
+  if (!fewer) return;
   const bool finite = extremes.finite;
   measure();
   extremes.finite = extremes.finite && finite;
 }
 
+/// Whoever is outside is no particle any more.
 template <typename T>
-void Engine<T>::retire(const std::vector<std::uint32_t>& slots) {
-  for (const std::uint32_t s : slots) {
+void Engine<T>::retire() {
+  for (std::size_t s = 0; s < layout.slots(); ++s) {
+    if (particles.id[s] < 0.0 || method.keeps(particles.position(s))) continue;
     const bool over = method.wall_top && particles.y[s] >= *method.wall_top;
     retired.push_back({particles.id[s], over ? RetireCause::overtopped : RetireCause::leaked,
                        step_count, time, particles.x[s], particles.y[s]});
+    particles.id[s] = kNobody;
+    --particle_count;
   }
-  particle_count -= slots.size();
 }
 
 template <typename T>
@@ -391,7 +386,7 @@ void Engine<T>::reorder(Order order) {
     if (!carries(method.integrator, field)) continue;
     std::vector<double>& values = particles.*field.member;
     double empty = 0.0;
-    if (field.name == "id") empty = -1.0;
+    if (field.name == "id") empty = kNobody;
     const double scale = field.unit == "m" ? method.smoothing_length : 0.0;
     resize_closely(moved, next.slots());
     team_.run(next.chunks(), [&](std::size_t chunk) {
@@ -424,12 +419,15 @@ void Engine<T>::bind() {
 template <typename T>
 void Engine<T>::make_lists() {
   tracks_.age = 0.0;
-  for_chunks([&](const ParticleSpan& p, Motion&) { tracks_.begin(pairs_, p.begin, p.end); });
-  bounds.assign_boxes(team_, layout, method, kLeeway<double>,
-                      {particles.x.data(), particles.y.data(), particles.vx.data(),
-                       particles.vy.data(), particles.id.data()});
+  bounds.resize(layout);
+  for_chunks([&](const ParticleSpan& p, Motion&) {
+    tracks_.begin(pairs_, p.begin, p.end);
+    bounds.assign_boxes(p.begin / kCluster, p.end / kCluster, grid_, method.smoothing_length,
+                        tracks_.view());
+  });
+  bounds.assign_strips(team_, layout);
   const PairRange<T> range{static_cast<T>(method.support_ratio() + kListSlack),
-                           constants_.tile_size, kLeeway<T>};
+                           constants_.tile_size, grid_.has_one_tile()};
   const PairSet<T> fluid{layout, bounds, tracks_.view()};
   const PairSet<T> wall = walls_.set();
   const std::array lists{NewPairList<T>{&fluid, &fluid, &fluid_to_fluid_},

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace sluice {
 namespace {
 
-constexpr double kMaxCells = 1 << 20;     // of one direction
-constexpr double kSingleTile = 1024.0;    // smoothing lengths
-constexpr double kTile = 512.0;           // smoothing lengths
-constexpr std::size_t kBlock = 1024;      // particles or cells to a task
+constexpr double kMaxCells = 1 << 20;   // of one direction
+constexpr double kSingleTile = 1024.0;  // smoothing lengths
+constexpr double kTile = 512.0;         // smoothing lengths
+constexpr std::size_t kPart = 1024;     // least slots to a part that is counted by itself
+constexpr std::size_t kMostParts = 64;
+constexpr std::size_t kStrips = 4;        // to a task
 constexpr std::size_t kWholeVectors = 4;  // clusters: every target's loops end on a whole vector
 
 // A large chunk has few neighbours in other chunks, all the fewer the more strips it spans; its
@@ -30,6 +34,105 @@ std::size_t chunk_of(std::size_t clusters) {
   return (std::max(few, many) + kWholeVectors - 1) / kWholeVectors * kWholeVectors;
 }
 
+template <class Body>
+void for_strips(ThreadTeam& team, const Grid& grid, const Body& body) {
+  team.run((grid.strips() + kStrips - 1) / kStrips, [&](std::size_t task) {
+    const std::size_t end = std::min(grid.strips(), kStrips * (task + 1));
+    for (std::size_t strip = kStrips * task; strip < end; ++strip) body(strip);
+  });
+}
+
+/// The particles of each strip, in the order of the input.
+struct StripLists {
+  std::vector<std::uint32_t> begin;      ///< of each strip, and the end
+  std::vector<std::uint32_t> particles;  ///< indices
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t strip) const {
+    return {particles.data() + begin[strip], particles.data() + begin[strip + 1]};
+  }
+};
+
+StripLists particles_of_strips(ThreadTeam& team, const Grid& grid, std::span<const double> y,
+                               std::span<const double> id) {
+  // A part counts all strips, and so they may be no more than a few for each particle.
+  const std::size_t parts = std::clamp<std::size_t>(
+      std::min(id.size() / kPart, 8 * id.size() / grid.strips()), 1, kMostParts);
+  // A counting sort by strip, part by part: where each part puts its next particle of a strip.
+  std::vector<std::vector<std::uint32_t>> next(parts);
+  std::vector<std::uint32_t> strip_of(id.size());
+  const auto for_particles = [&](std::size_t part, const auto& body) {
+    const std::size_t end = id.size() * (part + 1) / parts;
+    for (std::size_t p = id.size() * part / parts; p < end; ++p) {
+      if (id[p] >= 0.0) body(p);
+    }
+  };
+  team.run(parts, [&](std::size_t part) {
+    next[part].assign(grid.strips(), 0);
+    for_particles(part, [&](std::size_t p) {
+      strip_of[p] = static_cast<std::uint32_t>(grid.strip(y[p]));
+      ++next[part][strip_of[p]];
+    });
+  });
+  StripLists lists;
+  lists.begin.reserve(grid.strips() + 1);
+  std::uint32_t count = 0;
+  for (std::size_t strip = 0; strip < grid.strips(); ++strip) {
+    lists.begin.push_back(count);
+    for (std::vector<std::uint32_t>& of_part : next) {
+      count += std::exchange(of_part[strip], count);
+    }
+  }
+  lists.begin.push_back(count);
+  lists.particles.resize(count);
+  team.run(parts, [&](std::size_t part) {
+    for_particles(part, [&](std::size_t p) {
+      lists.particles[next[part][strip_of[p]]++] = static_cast<std::uint32_t>(p);
+    });
+  });
+  return lists;
+}
+
+/// The particles of a strip by (x, y, id): a counting sort by bin, then an insertion sort, for each
+/// bin holds a few. Linear.
+void sort_strip(const Grid& grid, std::span<const double> x, std::span<const double> y,
+                std::span<const double> id, std::span<const std::uint32_t> particles,
+                std::span<std::uint32_t> sorted) {
+  if (particles.empty()) return;
+  thread_local std::vector<std::uint32_t> next;  // of each bin
+  next.assign(grid.bins() + 1, 0);
+  for (const std::uint32_t p : particles) ++next[grid.bin(x[p]) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (const std::uint32_t p : particles) sorted[next[grid.bin(x[p])]++] = p;
+
+  const auto before = [&](std::uint32_t a, std::uint32_t b) {
+    if (x[a] != x[b]) return x[a] < x[b];
+    return std::tie(y[a], id[a]) < std::tie(y[b], id[b]);
+  };
+  for (std::size_t k = 1; k < sorted.size(); ++k) {
+    const std::uint32_t p = sorted[k];
+    std::size_t place = k;
+    for (; place > 0 && before(p, sorted[place - 1]); --place) sorted[place] = sorted[place - 1];
+    sorted[place] = p;
+  }
+}
+
+/// Calls put(slot, particle) for the sorted particles of a strip, slots counted from the strip's
+/// first. Returns how many slots the strip takes, whole clusters.
+template <class Put>
+std::uint32_t walk_clusters(const Grid& grid, std::span<const double> x,
+                            std::span<const std::uint32_t> sorted, const Put& put) {
+  constexpr auto kSlots = static_cast<std::uint32_t>(kCluster);
+  std::uint32_t slot = 0;
+  double cluster_start = 0.0;
+  for (const std::uint32_t p : sorted) {
+    const std::uint32_t used = slot % kSlots;
+    if (used != 0 && x[p] - cluster_start > grid.max_cluster_length()) slot += kSlots - used;
+    if (slot % kSlots == 0) cluster_start = x[p];
+    put(slot++, p);
+  }
+  return (slot + kSlots - 1) / kSlots * kSlots;
+}
+
 }  // namespace
 
 Grid::Grid(const Box& domain, double spacing, double smoothing_length, std::size_t particles) {
@@ -43,15 +146,15 @@ Grid::Grid(const Box& domain, double spacing, double smoothing_length, std::size
   bins_ = static_cast<std::size_t>(domain.size().x() / bin_) + 1;
   max_cluster_length_ = std::max(6.0 * spacing, 3.0 * smoothing_length);
 
-  const bool one_tile = domain.size().maxCoeff() <= kSingleTile * smoothing_length;
-  tile_size_ = (one_tile ? 4.0 * kSingleTile : kTile) * smoothing_length;
-  tile_origin_ = one_tile ? Vec((domain.min + domain.max) / 2.0 - Vec::Constant(tile_size_ / 2.0))
-                          : domain.min;
+  one_tile_ = domain.size().maxCoeff() <= kSingleTile * smoothing_length;
+  tile_size_ = (one_tile_ ? 4.0 * kSingleTile : kTile) * smoothing_length;
+  tile_origin_ = one_tile_ ? Vec((domain.min + domain.max) / 2.0 - Vec::Constant(tile_size_ / 2.0))
+                           : domain.min;
 }
 
 std::size_t Grid::cell(double distance, double size, std::size_t count) {
-  const double n = std::floor(distance / size);
-  if (!(n > 0.0)) return 0;
+  const double n = distance / size;
+  if (!(n >= 1.0)) return 0;
   return std::min(static_cast<std::size_t>(std::min(n, kMaxCells * 4.0)), count - 1);
 }
 
@@ -65,66 +168,33 @@ Grid::Tile Grid::tile(const Vec& position) const {
 }
 
 Order sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const double> x,
-                         std::span<const double> y, std::span<const double> id,
-                         std::span<const std::uint32_t> use) {
-  // Counting sort by cell, then insertion sort by x inside it: linear.
-  std::vector<std::uint32_t> cell(use.size());
-  team.run((use.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min(use.size(), kBlock * (block + 1));
-    for (std::size_t k = kBlock * block; k < end; ++k) {
-      const std::uint32_t p = use[k];
-      cell[k] = static_cast<std::uint32_t>(grid.strip(y[p]) * grid.bins() + grid.bin(x[p]));
-    }
+                         std::span<const double> y, std::span<const double> id) {
+  const StripLists strips = particles_of_strips(team, grid, y, id);
+  std::vector<std::uint32_t> sorted(strips.particles.size());
+  std::vector<std::uint32_t> slots(grid.strips() + 1, 0);  // of each strip, then their first
+  for_strips(team, grid, [&](std::size_t strip) {
+    const std::span<std::uint32_t> own(sorted.data() + strips.begin[strip],
+                                       sorted.data() + strips.begin[strip + 1]);
+    sort_strip(grid, x, y, id, strips.of(strip), own);
+    slots[strip + 1] = walk_clusters(grid, x, own, [](std::uint32_t, std::uint32_t) {});
   });
-  std::vector<std::uint32_t> first(grid.strips() * grid.bins() + 1, 0);
-  for (const std::uint32_t c : cell) ++first[c + 1];
-  for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
-
-  std::vector<std::uint32_t> sorted(use.size());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::size_t k = 0; k < use.size(); ++k) sorted[next[cell[k]]++] = use[k];
-
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    if (x[a] != x[b]) return x[a] < x[b];
-    return std::tie(y[a], id[a]) < std::tie(y[b], id[b]);
-  };
-  const std::size_t cells = first.size() - 1;
-  team.run((cells + kBlock - 1) / kBlock, [&](std::size_t block) {
-    for (std::size_t c = kBlock * block; c < std::min(cells, kBlock * (block + 1)); ++c) {
-      for (std::uint32_t k = first[c] + 1; k < first[c + 1]; ++k) {
-        const std::uint32_t p = sorted[k];
-        std::uint32_t place = k;
-        for (; place > first[c] && before(p, sorted[place - 1]); --place) {
-          sorted[place] = sorted[place - 1];
-        }
-        sorted[place] = p;
-      }
-    }
-  });
+  std::partial_sum(slots.begin(), slots.end(), slots.begin());
 
   Order order;
   Layout& layout = order.layout;
-  std::vector<std::uint32_t>& source = order.source;
-  source.reserve(use.size() + use.size() / 8 + kCluster * (grid.strips() + kWholeVectors));
-  layout.strip_begin.reserve(grid.strips() + 1);
-  const auto fill_cluster = [&](std::size_t multiple) {
-    while (source.size() % multiple != 0) source.push_back(Order::kEmpty);
-  };
-  for (std::size_t strip = 0; strip < grid.strips(); ++strip) {
-    layout.strip_begin.push_back(static_cast<std::uint32_t>(source.size() / kCluster));
-    double cluster_start = 0.0;
-    for (std::size_t k = first[strip * grid.bins()]; k < first[(strip + 1) * grid.bins()]; ++k) {
-      const std::uint32_t p = sorted[k];
-      if (x[p] - cluster_start > grid.max_cluster_length()) fill_cluster(kCluster);
-      if (source.size() % kCluster == 0) cluster_start = x[p];
-      source.push_back(p);
-    }
-    fill_cluster(kCluster);
+  for (const std::uint32_t slot : slots) {
+    layout.strip_begin.push_back(slot / static_cast<std::uint32_t>(kCluster));
   }
-  layout.strip_begin.push_back(static_cast<std::uint32_t>(source.size() / kCluster));
-  fill_cluster(kCluster * kWholeVectors);
-  layout.slot_count = source.size();
+  constexpr std::size_t kWhole = kCluster * kWholeVectors;
+  layout.slot_count = (slots.back() + kWhole - 1) / kWhole * kWhole;
   layout.chunk = chunk_of(layout.clusters());
+  order.source.assign(layout.slot_count, Order::kEmpty);
+  for_strips(team, grid, [&](std::size_t strip) {
+    std::uint32_t* const source = order.source.data() + slots[strip];
+    walk_clusters(grid, x,
+                  {sorted.data() + strips.begin[strip], sorted.data() + strips.begin[strip + 1]},
+                  [&](std::uint32_t slot, std::uint32_t particle) { source[slot] = particle; });
+  });
   return order;
 }
 

@@ -46,6 +46,8 @@ class Grid {
     return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
   }
   [[nodiscard]] double tile_size() const { return tile_size_; }
+  /// Whether all particles in the domain are in one tile.
+  [[nodiscard]] bool has_one_tile() const { return one_tile_; }
 
  private:
   static std::size_t cell(double distance, double size, std::size_t count);
@@ -56,6 +58,7 @@ class Grid {
   std::size_t strips_;
   std::size_t bins_;
   double max_cluster_length_;
+  bool one_tile_;
   double tile_size_;
   Vec tile_origin_;
 };
@@ -83,11 +86,10 @@ struct Order {
   std::vector<std::uint32_t> source;  ///< per slot: index of the particle, or kEmpty
 };
 
-/// Orders the particles by (strip, x, y, id). The order of the input changes nothing. `use` holds
-/// the particles to place.
+/// Orders the particles by (strip, x, y, id). The order of the input changes nothing. Slots with
+/// id < 0 are empty and are left out.
 [[nodiscard]] Order sort_into_clusters(ThreadTeam& team, const Grid& grid,
                                        std::span<const double> x, std::span<const double> y,
-                                       std::span<const double> id,
-                                       std::span<const std::uint32_t> use);
+                                       std::span<const double> id);
 
 }  // namespace sluice

@@ -11,10 +11,15 @@ namespace {
 // Of differences of bounds; the bounds themselves are rounded outwards.
 constexpr float kSlack = 1e-3F;
 
-std::uint32_t tile_code(const Grid::Tile& i, const Grid::Tile& j) {
-  const int column = std::clamp(j.column - i.column, -1, 1) + 1;
-  const int row = std::clamp(j.row - i.row, -1, 1) + 1;
-  return static_cast<std::uint32_t>(row * 3 + column);
+/// The entries' tiles as seen from that of cluster i.
+void note_tiles(const Grid::Tile& i, const ClusterBounds& other, std::span<std::uint32_t> entries) {
+  for (std::uint32_t& entry : entries) {
+    const std::uint32_t cluster = entry & PairList::kClusterMask;
+    const Grid::Tile& j = other.tile[cluster];
+    const int column = std::clamp(j.column - i.column, -1, 1) + 1;
+    const int row = std::clamp(j.row - i.row, -1, 1) + 1;
+    entry = cluster | static_cast<std::uint32_t>(row * 3 + column) << PairList::kShiftBit;
+  }
 }
 
 /// Walks the clusters of `other` beside those of one strip of `self`, left to right.
@@ -27,6 +32,7 @@ class StripSearch {
   /// are left out.
   void start(float low, float high, std::size_t first_strip) {
     rows_.clear();
+    room_ = kSearchTail;
     const std::size_t strips = layout_.strip_begin.size() - 1;
     for (std::size_t s = std::max(first_strip, bounds_.first_strip(low - range_));
          s < strips && bounds_.strip_y_min_after[s] <= high + range_; ++s) {
@@ -34,48 +40,34 @@ class StripSearch {
       const std::uint32_t end = layout_.strip_begin[s + 1];
       if (bounds_.strip_y_max[s] < low - range_ || bounds_.strip_y_min[s] > high + range_) continue;
       rows_.push_back({begin, end});
+      room_ += end - begin;
     }
   }
 
-  /// Fills `out` with the entries for cluster `i` of `self`; later clusters of its strip begin no
-  /// farther left than self.x_min_after[i]. Clusters of `other` before `first` are left out.
-  /// Returns how many they are; `out` may be longer.
-  std::size_t collect(const ClusterBounds& self, std::size_t i, std::size_t first,
-                      std::vector<std::uint32_t>& out) {
-    std::size_t found = 0;
-    const float left = self.x_min[i] - range_;
-    const float right = self.x_max[i] + range_;
-    const float low = self.y_min[i] - range_;
-    const float high = self.y_max[i] + range_;
-    const float passed = self.x_min_after[i] - range_;
-    for (Row& row : rows_) {
-      row.next = std::max(row.next, static_cast<std::uint32_t>(first));
-      while (row.next < row.end && bounds_.x_max_before[row.next] < passed) ++row.next;
-      // Room first, so that no entry waits for a branch.
-      std::uint32_t last = row.next;
-      while (last < row.end && bounds_.x_min_after[last] <= right) ++last;
-      if (out.size() < found + (last - row.next)) out.resize(2 * (found + (last - row.next)));
-      for (std::uint32_t j = row.next; j < last; ++j) {
-        out[found] = j | tile_code(self.tile[i], bounds_.tile[j]) << PairList::kShiftBit;
-        const unsigned near_x =
-            unsigned{bounds_.x_max[j] >= left} & unsigned{bounds_.x_min[j] <= right};
-        const unsigned near_y =
-            unsigned{bounds_.y_max[j] >= low} & unsigned{bounds_.y_min[j] <= high};
-        found += near_x & near_y;
-      }
-    }
-    return found;
+  /// Most entries of a cluster of this strip, and the room that the search needs beyond.
+  [[nodiscard]] std::size_t room() const { return room_; }
+
+  /// What to search for cluster `i` of `self`, the clusters of a strip in their order. Clusters of
+  /// `other` before `first` are left out.
+  [[nodiscard]] SearchTask task(const ClusterBounds& self, std::size_t i, std::size_t first,
+                                std::uint32_t* out) {
+    return {bounds_.view(),
+            self.x_min[i] - range_,
+            self.x_max[i] + range_,
+            self.y_min[i] - range_,
+            self.y_max[i] + range_,
+            self.x_min_after[i] - range_,
+            static_cast<std::uint32_t>(first),
+            rows_,
+            out};
   }
 
  private:
-  struct Row {
-    std::uint32_t next;
-    std::uint32_t end;
-  };
   const Layout& layout_;
   const ClusterBounds& bounds_;
   float range_;
-  std::vector<Row> rows_;
+  std::vector<SearchTask::Row> rows_;
+  std::size_t room_ = 0;
 };
 
 /// Gives every entry of a mutual list its place in the chunk's sums.
@@ -109,13 +101,14 @@ void assign_places(std::size_t first, std::size_t count, std::size_t clusters,
 
 constexpr float kHuge = std::numeric_limits<float>::max();
 
-/// A box that is still empty, in smoothing lengths.
+/// A box that is still empty along one axis, in smoothing lengths.
+template <typename T>
 struct Extent {
-  double low = std::numeric_limits<double>::max();
-  double high = -std::numeric_limits<double>::max();
-  void add(double from, double way, double leeway) {
-    low = std::min(low, from + std::min(way, 0.0) - leeway);
-    high = std::max(high, from + std::max(way, 0.0) + leeway);
+  T low = std::numeric_limits<T>::max();
+  T high = -std::numeric_limits<T>::max();
+  void add(T from, T way, T leeway) {
+    low = std::min(low, from + std::min(way, T{0}) - leeway);
+    high = std::max(high, from + std::max(way, T{0}) + leeway);
   }
 };
 
@@ -132,8 +125,8 @@ void build_chunk(const Sweeps<T>& sweeps, const PairRange<T>& range, const NewPa
   chunk.begin.assign(count + 1, 0);
 
   // The thread's own, so that a chunk's list is no longer than what it holds.
+  thread_local std::vector<std::uint32_t> candidates;
   thread_local std::vector<std::uint32_t> entries;
-  std::vector<std::uint32_t> candidates;
   StripSearch search(other.layout, other.bounds, static_cast<float>(range.cut_off));
   const ClusterBounds& bounds = self.bounds;
   const auto& strips = self.layout.strip_begin;
@@ -146,11 +139,14 @@ void build_chunk(const Sweeps<T>& sweeps, const PairRange<T>& range, const NewPa
       strip_end = std::upper_bound(strips.begin(), strips.end(), static_cast<std::uint32_t>(c));
       const auto s = static_cast<std::size_t>(strip_end - strips.begin()) - 1;
       search.start(bounds.strip_y_min[s], bounds.strip_y_max[s], mutual ? s : 0);
+      if (candidates.size() < search.room()) candidates.resize(search.room());
     }
-    const std::size_t found = search.collect(bounds, c, mutual ? c : 0, candidates);
+    const std::size_t found =
+        sweeps.search(search.task(bounds, c, mutual ? c : 0, candidates.data()));
+    if (!range.one_tile) note_tiles(bounds.tile[c], other.bounds, {candidates.data(), found});
     if (entries.size() < chunk.begin[n] + found) entries.resize(2 * (chunk.begin[n] + found));
     const std::size_t kept =
-        sweeps.prune({self.tracks, other.tracks, range.leeway, range.cut_off, range.tile_size, c,
+        sweeps.prune({self.tracks, other.tracks, kLeeway<T>, range.cut_off, range.tile_size, c,
                       candidates.data(), found, entries.data() + chunk.begin[n]});
     chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
   }
@@ -160,11 +156,6 @@ void build_chunk(const Sweeps<T>& sweeps, const PairRange<T>& range, const NewPa
 }
 
 }  // namespace
-
-float outwards(double value, double towards) {
-  constexpr double kRounding = 2.0 * std::numeric_limits<float>::epsilon();
-  return static_cast<float>(value + towards * kRounding * std::abs(value));
-}
 
 void ClusterBounds::assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout,
                                  const double* x, const double* y, const double* id) {
@@ -178,45 +169,53 @@ void ClusterBounds::assign_tiles(ThreadTeam& team, const Grid& grid, const Layou
   });
 }
 
-void ClusterBounds::assign_boxes(ThreadTeam& team, const Layout& layout, const Method& method,
-                                 const Leeway<double>& leeway, const Places& places) {
-  const std::size_t clusters = layout.clusters();
+void ClusterBounds::resize(const Layout& layout) {
   for (auto* a : {&x_min, &x_max, &y_min, &y_max, &x_max_before, &x_min_after}) {
-    resize_closely(*a, clusters);
+    a->resize(layout.clusters());
   }
-  const std::size_t strips = layout.strip_begin.size() - 1;
-  strip_y_min.assign(strips, kHuge);
-  strip_y_max.assign(strips, -kHuge);
-  const double per_h = 1.0 / method.smoothing_length;
-  const double per_c = 1.0 / method.sound_speed;
-  const auto box = [&](std::size_t c) {
-    Extent x;
-    Extent y;
-    for (std::size_t s = kCluster * c; s < kCluster * (c + 1) && places.id[s] >= 0.0; ++s) {
-      const double u = places.vx != nullptr ? track_speed(places.vx[s] * per_c) : 0.0;
-      const double v = places.vy != nullptr ? track_speed(places.vy[s] * per_c) : 0.0;
-      const double off = leeway.least + leeway.per_speed * (std::abs(u) + std::abs(v));
-      x.add(places.x[s] * per_h, leeway.lifetime * u, off);
-      y.add(places.y[s] * per_h, leeway.lifetime * v, off);
+}
+
+template <typename T>
+void ClusterBounds::assign_boxes(std::size_t begin, std::size_t end, const Grid& grid,
+                                 double smoothing_length, const TracksView<T>& tracks) {
+  constexpr Leeway<T> leeway = kLeeway<T>;
+  for (std::size_t c = begin; c < end; ++c) {
+    Extent<T> x;
+    Extent<T> y;
+    for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
+      if (!(std::abs(tracks.x[s]) < static_cast<T>(kNowhere))) continue;
+      const T off =
+          leeway.least + leeway.per_speed * (std::abs(tracks.u[s]) + std::abs(tracks.v[s]));
+      x.add(tracks.x[s], leeway.lifetime * tracks.u[s], off);
+      y.add(tracks.y[s], leeway.lifetime * tracks.v[s], off);
     }
-    const bool used = places.id[kCluster * c] >= 0.0;
-    x_min[c] = used ? outwards(x.low, -1.0) : kHuge;
-    x_max[c] = used ? outwards(x.high, 1.0) : -kHuge;
-    y_min[c] = used ? outwards(y.low, -1.0) : kHuge;
-    y_max[c] = used ? outwards(y.high, 1.0) : -kHuge;
-  };
-  team.run(layout.chunks(), [&](std::size_t chunk) {
-    for (std::size_t c = layout.chunk_begin(chunk); c < layout.chunk_begin(chunk + 1); ++c) box(c);
-  });
+    const bool used = x.low <= x.high;
+    const Vec origin = grid.tile_center(tile[c]) / smoothing_length;
+    x_min[c] = used ? outwards(origin.x() + static_cast<double>(x.low), -1.0) : kHuge;
+    x_max[c] = used ? outwards(origin.x() + static_cast<double>(x.high), 1.0) : -kHuge;
+    y_min[c] = used ? outwards(origin.y() + static_cast<double>(y.low), -1.0) : kHuge;
+    y_max[c] = used ? outwards(origin.y() + static_cast<double>(y.high), 1.0) : -kHuge;
+  }
+}
+
+void ClusterBounds::assign_strips(ThreadTeam& team, const Layout& layout) {
+  const std::size_t strips = layout.strip_begin.size() - 1;
+  strip_y_min.resize(strips);
+  strip_y_max.resize(strips);
   team.run(strips, [&](std::size_t s) {
     const std::size_t begin = layout.strip_begin[s];
     const std::size_t end = layout.strip_begin[s + 1];
+    // Written once: strips side by side share lines of the cache.
+    float low = kHuge;
+    float high = -kHuge;
     float right = -kHuge;
     for (std::size_t c = begin; c < end; ++c) {
       x_max_before[c] = right = std::max(right, x_max[c]);
-      strip_y_min[s] = std::min(strip_y_min[s], y_min[c]);
-      strip_y_max[s] = std::max(strip_y_max[s], y_max[c]);
+      low = std::min(low, y_min[c]);
+      high = std::max(high, y_max[c]);
     }
+    strip_y_min[s] = low;
+    strip_y_max[s] = high;
     float left = kHuge;
     for (std::size_t c = end; c-- > begin;) x_min_after[c] = left = std::min(left, x_min[c]);
   });
@@ -248,6 +247,10 @@ void build_pair_lists(ThreadTeam& team, const Sweeps<T>& sweeps, const PairRange
   });
 }
 
+template void ClusterBounds::assign_boxes<float>(std::size_t, std::size_t, const Grid&, double,
+                                                 const TracksView<float>&);
+template void ClusterBounds::assign_boxes<double>(std::size_t, std::size_t, const Grid&, double,
+                                                  const TracksView<double>&);
 template void build_pair_lists<float>(ThreadTeam&, const Sweeps<float>&, const PairRange<float>&,
                                       std::span<const NewPairList<float>>);
 template void build_pair_lists<double>(ThreadTeam&, const Sweeps<double>&, const PairRange<double>&,

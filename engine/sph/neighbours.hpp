@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -9,20 +11,24 @@
 #include "engine/sph/pair_arrays.hpp"
 #include "engine/sph/sweeps.hpp"
 #include "engine/sph/thread_team.hpp"
+#include "engine/sph/tracks.hpp"
 
 namespace sluice {
 
 /// In single precision and a little farther towards -1 or 1: the value's own rounding, and that of
 /// a sum with it.
-[[nodiscard]] float outwards(double value, double towards);
+[[nodiscard]] inline float outwards(double value, double towards) {
+  constexpr double kRounding = 2.0 * std::numeric_limits<float>::epsilon();
+  return static_cast<float>(value + towards * kRounding * std::abs(value));
+}
 
 /// Boxes, in smoothing lengths, that the clusters of one set stay in while their particles are
 /// within the leeway of their tracks.
 struct ClusterBounds {
-  std::vector<float> x_min, x_max, y_min, y_max;
-  std::vector<float> x_max_before;  ///< largest x_max of the strip up to the cluster
-  std::vector<float> x_min_after;   ///< least x_min of the strip from the cluster on
-  std::vector<Grid::Tile> tile;     ///< of the sorted places
+  AlignedArray<float> x_min, x_max, y_min, y_max;
+  AlignedArray<float> x_max_before;  ///< largest x_max of the strip up to the cluster
+  AlignedArray<float> x_min_after;   ///< least x_min of the strip from the cluster on
+  std::vector<Grid::Tile> tile;      ///< of the sorted places
   std::vector<float> strip_y_min, strip_y_max;
   std::vector<float> strip_y_max_before;  ///< largest strip_y_max up to the strip
   std::vector<float> strip_y_min_after;   ///< least strip_y_min from the strip on
@@ -31,25 +37,27 @@ struct ClusterBounds {
   void assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout, const double* x,
                     const double* y, const double* id);
 
-  /// Where particles are, per slot in m, and their velocities in m/s, null for particles at rest.
-  struct Places {
-    const double* x;
-    const double* y;
-    const double* vx;
-    const double* vy;
-    const double* id;
-  };
-  void assign_boxes(ThreadTeam& team, const Layout& layout, const Method& method,
-                    const Leeway<double>& leeway, const Places& places);
+  /// Room for the boxes of all clusters.
+  void resize(const Layout& layout);
+  /// The boxes of the clusters [begin, end). Lengths in m.
+  template <typename T>
+  void assign_boxes(std::size_t begin, std::size_t end, const Grid& grid, double smoothing_length,
+                    const TracksView<T>& tracks);
+  /// What follows from all boxes.
+  void assign_strips(ThreadTeam& team, const Layout& layout);
 
   /// No strip before this one reaches up to y.
   [[nodiscard]] std::size_t first_strip(float y) const;
 
+  [[nodiscard]] BoxesView view() const {
+    return {x_min.data(), x_max.data(),        y_min.data(),
+            y_max.data(), x_max_before.data(), x_min_after.data()};
+  }
   /// Of what there is per cluster.
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = tile.capacity() * sizeof(Grid::Tile);
     for (const auto* a : {&x_min, &x_max, &y_min, &y_max, &x_max_before, &x_min_after}) {
-      sum += a->capacity() * sizeof(float);
+      sum += a->bytes();
     }
     return sum;
   }
@@ -68,7 +76,7 @@ template <typename T>
 struct PairRange {
   T cut_off;
   T tile_size;
-  Leeway<T> leeway;
+  bool one_tile;  ///< holds all particles of all sets
 };
 
 /// A list to build: for every cluster of `self` the clusters of `other` of which a particle may

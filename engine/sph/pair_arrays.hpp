@@ -89,6 +89,16 @@ struct PairArrays {
   }
 };
 
+/// Boxes that hold the clusters of a set, in h (ClusterBounds). A vector past the end may be read.
+struct BoxesView {
+  const float* x_min = nullptr;
+  const float* x_max = nullptr;
+  const float* y_min = nullptr;
+  const float* y_max = nullptr;
+  const float* x_max_before = nullptr;
+  const float* x_min_after = nullptr;
+};
+
 /// For every cluster of a set, the clusters of another that may hold a neighbour, chunk by chunk.
 /// A list of a set with itself is mutual: it holds each pair of clusters once, and what is summed
 /// over it goes to both. Every chunk then has sums of its own, for its clusters and for its guests,

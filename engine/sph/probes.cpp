@@ -10,59 +10,56 @@
 namespace sluice {
 namespace {
 
-/// The first in [begin, end) with values[i] >= least, values ascending; end where there is none. As
-/// std::lower_bound, without branches that nothing predicts: a probe does little else.
-std::size_t first_from(const float* values, std::size_t begin, std::size_t end, float least) {
-  std::size_t count = end - begin;
-  while (count > 0) {
-    const std::size_t half = (count + 1) / 2;
-    begin += static_cast<std::size_t>(values[begin + half - 1] < least) * half;
-    count -= half;
-  }
-  return begin;
-}
+/// Of boxes and places in smoothing lengths; covers rounding.
+constexpr double kBoxSlack = 1e-3;
 
 }  // namespace
 
 template <class Body>
-void FluidProbe::for_runs_in(const Box& box, const Body& body) const {
-  // The clusters' boxes hold their particles, in smoothing lengths; the slack covers rounding.
-  const double h = method_.smoothing_length;
-  const double slack = 1e-3;
-  const float x_min = outwards(box.min.x() / h - slack, -1.0);
-  const float x_max = outwards(box.max.x() / h + slack, 1.0);
-  const float y_min = outwards(box.min.y() / h - slack, -1.0);
-  const float y_max = outwards(box.max.y() / h + slack, 1.0);
-  for (std::size_t strip = bounds_.first_strip(y_min); strip + 1 < layout_.strip_begin.size();
+void FluidProbe::for_strips_in(float low, float high, const Body& body) const {
+  for (std::size_t strip = bounds_.first_strip(low); strip + 1 < layout_.strip_begin.size();
        ++strip) {
-    if (bounds_.strip_y_min_after[strip] > y_max) break;
-    if (bounds_.strip_y_max[strip] < y_min) continue;
-    if (bounds_.strip_y_min[strip] > y_max) continue;
-    const std::size_t end = layout_.strip_begin[strip + 1];
-    const std::size_t from =
-        first_from(bounds_.x_max_before.data(), layout_.strip_begin[strip], end, x_min);
-    std::size_t to = from;
-    while (to < end && bounds_.x_min_after[to] <= x_max) ++to;
-    if (from < to) body(kCluster * from, kCluster * to);
+    if (bounds_.strip_y_min_after[strip] > high) break;
+    if (bounds_.strip_y_max[strip] >= low && bounds_.strip_y_min[strip] <= high) body(strip);
   }
 }
 
 template <class Body>
 void FluidProbe::for_each_in(const Box& box, const Body& body) const {
-  for_runs_in(box, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      if (particles_.id[s] >= 0.0) body(s);
+  const double h = method_.smoothing_length;
+  const float x_min = outwards(box.min.x() / h - kBoxSlack, -1.0);
+  const float x_max = outwards(box.max.x() / h + kBoxSlack, 1.0);
+  const auto in_strip = [&](std::size_t strip) {
+    const float* const reach = bounds_.x_max_before.data();
+    const std::uint32_t end = layout_.strip_begin[strip + 1];
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(reach + layout_.strip_begin[strip], reach + end, x_min) - reach);
+    for (std::size_t c = first; c < end && bounds_.x_min_after[c] <= x_max; ++c) {
+      for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
+        if (particles_.id[s] >= 0.0) body(s);
+      }
     }
-  });
+  };
+  for_strips_in(outwards(box.min.y() / h - kBoxSlack, -1.0),
+                outwards(box.max.y() / h + kBoxSlack, 1.0), in_strip);
 }
 
 Probe FluidProbe::pressure(const Vec& point, double h) const {
-  const Vec support = Vec::Constant(method_.support_ratio() * h);
-  const Surroundings around{point, h, method_.reference_density};
-  PointSums sums;
-  for_runs_in({point - support, point + support}, [&](std::size_t begin, std::size_t end) {
-    sum_around_(particles_, begin, end, around, sums);
-  });
+  // The part of each strip that lies in the circle of the support.
+  thread_local std::vector<Surroundings::Row> rows;
+  rows.clear();
+  const Vec place = point / method_.smoothing_length;
+  const double reach = method_.support_ratio() * h / method_.smoothing_length + kBoxSlack;
+  const auto add_row = [&](std::size_t strip) {
+    const double off = std::max({0.0, bounds_.strip_y_min[strip] - place.y() - kBoxSlack,
+                                 place.y() - bounds_.strip_y_max[strip] - kBoxSlack});
+    const double along = std::sqrt(std::max(0.0, reach * reach - off * off)) + kBoxSlack;
+    rows.push_back({layout_.strip_begin[strip], layout_.strip_begin[strip + 1],
+                    outwards(place.x() - along, -1.0), outwards(place.x() + along, 1.0)});
+  };
+  for_strips_in(outwards(place.y() - reach, -1.0), outwards(place.y() + reach, 1.0), add_row);
+  const PointSums sums =
+      sum_around_(particles_, {point, h, method_.reference_density, bounds_.view(), rows});
   if (!(sums.kernel > 0.0)) return {};
   const LinearEquationOfState state{method_.sound_speed};
   const double scale = kernel_value_scale(method_.kernel) * method_.particle_mass() / (h * h);

@@ -440,6 +440,45 @@ void sum_reinitialisation(const SweepTask<T>& task) {
   }
 }
 
+/// Rows hold a few clusters that are near, a vector of them or less.
+inline std::size_t search_boxes(const SearchTask& task) {
+  const hn::CappedTag<float, kSearchTail> d;
+  const hn::RebindToUnsigned<decltype(d)> d_entry;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
+  const auto numbers = hn::Iota(d_entry, 0);
+  const auto left = hn::Set(d, task.left);
+  const auto right = hn::Set(d, task.right);
+  const auto low = hn::Set(d, task.low);
+  const auto high = hn::Set(d, task.high);
+  const auto left_after = hn::Set(d, task.left_after);
+  const BoxesView& boxes = task.boxes;
+  std::size_t found = 0;
+  for (SearchTask::Row& row : task.rows) {
+    std::uint32_t j = std::max(row.next, task.first);
+    for (; j < row.end; j += lanes) {
+      const auto reached = hn::LoadU(d, boxes.x_max_before + j) >= left_after;
+      const auto first = hn::FindFirstTrue(d, reached);
+      if (first < 0) continue;
+      j += static_cast<std::uint32_t>(first);
+      break;
+    }
+    row.next = j;
+    for (; j < row.end; j += lanes) {
+      const auto beside =
+          hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
+      const auto level =
+          hn::And(hn::LoadU(d, boxes.y_max + j) >= low, hn::LoadU(d, boxes.y_min + j) <= high);
+      const auto near = hn::And(hn::And(beside, level), hn::FirstN(d, row.end - j));
+      const auto chosen = hn::RebindMask(d_entry, near);
+      const auto entries = numbers + hn::Set(d_entry, j + (kSameTile << PairList::kShiftBit));
+      hn::StoreU(hn::Compress(entries, chosen), d_entry, task.out + found);
+      found += hn::CountTrue(d_entry, chosen);
+      if (j + lanes < row.end && boxes.x_min_after[j + lanes] > task.right) break;
+    }
+  }
+  return found;
+}
+
 /// Where the particles i or j of a vector are in the middle of the lists' lifetime, their
 /// velocities and what they may be off.
 template <class V>
@@ -542,6 +581,7 @@ void fill_sweeps(const Method& method, Sweeps<T>& out) {
   out.wall_pressure = &sum_wall_pressure<Shape, T>;
   out.reinitialise = &sum_reinitialisation<Shape, T>;
   out.updates.sum_around = &sum_around<Shape>;
+  out.search = &search_boxes;
   out.prune = &prune_list<T>;
   out.target = hwy::TargetName(HWY_TARGET);
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,23 @@ struct SweepTask {
                       ///< the wall pressure one value per slot
 };
 
+/// A cluster i, by its box, whose possible neighbours among the clusters j are wanted.
+struct SearchTask {
+  /// Clusters j of a strip; those before `next` are near neither i nor a later cluster of its
+  /// strip.
+  struct Row {
+    std::uint32_t next = 0;
+    std::uint32_t end = 0;
+  };
+  BoxesView boxes;                       ///< of the clusters j
+  float left{}, right{}, low{}, high{};  ///< of cluster i, with the cut-off, h
+  float left_after{};                    ///< least `left` from cluster i on
+  std::uint32_t first = 0;               ///< clusters j before it are left out
+  std::span<Row> rows;                   ///< of the strips near i; `next` is moved on
+  std::uint32_t* out = nullptr;  ///< entries; room for all clusters of the rows and kSearchTail
+};
+inline constexpr std::size_t kSearchTail = 16;
+
 /// A cluster i whose list of possible neighbours among the clusters j is wanted.
 template <typename T>
 struct PruneTask {
@@ -63,6 +81,9 @@ struct Sweeps {
   Sweep acceleration = nullptr;              ///< eqs. 5, 8, viscous stress
   Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
   Sweep reinitialise = nullptr;              ///< eq. 10
+  /// The clusters whose boxes meet that of cluster i, as entries of the same tile; returns how
+  /// many.
+  std::size_t (*search)(const SearchTask&) = nullptr;
   /// Keeps the candidates of which a particle may come within the cut-off of one of cluster i while
   /// both stay within the leeway of their tracks.
   std::size_t (*prune)(const PruneTask<T>&) = nullptr;

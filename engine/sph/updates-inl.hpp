@@ -47,8 +47,9 @@ HWY_INLINE StateVec load_rate(const Rates<T>& rates, std::size_t block, double s
   return hn::Set(d, scale) * load_sums(rates, block, s) + hn::Set(d, constant);
 }
 
-HWY_INLINE void add_scaled(double* HWY_RESTRICT to, StateVec value, double factor) {
-  const State d;
+template <class V>
+HWY_INLINE void add_scaled(double* HWY_RESTRICT to, V value, double factor) {
+  const hn::DFromV<V> d;
   hn::StoreU(hn::LoadU(d, to) + hn::Set(d, factor) * value, d, to);
 }
 
@@ -75,7 +76,7 @@ void leap_frog(const ParticleSpan& p, const Rates<T>& r, double dt_mean, double 
 }
 
 inline void kick_drift(const ParticleSpan& p, double dt) {
-  const State d;
+  const hn::ScalableTag<double> d;
   const auto along = [&](double* HWY_RESTRICT x, double* HWY_RESTRICT v,
                          const double* HWY_RESTRICT a, std::size_t s) HWY_ATTR {
     add_scaled(v + s, hn::LoadU(d, a + s), 0.5 * dt);
@@ -155,17 +156,13 @@ void gather(std::span<const Arrival> arrivals, const T* const* sums_of_chunks, s
   }
 }
 
-/// to = (from - origin(cluster)) * scale
-template <typename T, class Origin>
-HWY_INLINE void write_relative(const ParticleSpan& p, T* HWY_RESTRICT to,
-                               const double* HWY_RESTRICT from, const Origin& origin,
-                               double scale) {
-  using D = hn::CappedTag<double, kCluster>;
-  const D d;
+/// to = (from - origin) * scale for the slots [begin, end)
+template <class D, typename T>
+HWY_INLINE void write_relative(D d, std::size_t begin, std::size_t end, T* HWY_RESTRICT to,
+                               const double* HWY_RESTRICT from, double origin, double scale) {
   const hn::Rebind<T, D> d_out;
-  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const auto value =
-        (hn::LoadU(d, from + s) - hn::Set(d, origin(s / kCluster))) * hn::Set(d, scale);
+  for (std::size_t s = begin; s < end; s += hn::Lanes(d)) {
+    const auto value = (hn::LoadU(d, from + s) - hn::Set(d, origin)) * hn::Set(d, scale);
     if constexpr (std::is_same_v<T, double>) {
       hn::StoreU(value, d_out, to + s);
     } else {
@@ -176,12 +173,16 @@ HWY_INLINE void write_relative(const ParticleSpan& p, T* HWY_RESTRICT to,
 
 template <typename T>
 void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
-  const auto center_x = [&](std::size_t cluster)
-                            HWY_ATTR { return k.grid->tile_center(k.tile[cluster]).x(); };
-  const auto center_y = [&](std::size_t cluster)
-                            HWY_ATTR { return k.grid->tile_center(k.tile[cluster]).y(); };
-  write_relative(p, out.x.data(), p.x, center_x, k.inverse_length);
-  write_relative(p, out.y.data(), p.y, center_y, k.inverse_length);
+  const auto write = [&](auto d, std::size_t begin, std::size_t end) HWY_ATTR {
+    const Vec origin = k.grid->tile_center(k.tile[begin / kCluster]);
+    write_relative(d, begin, end, out.x.data(), p.x, origin.x(), k.inverse_length);
+    write_relative(d, begin, end, out.y.data(), p.y, origin.y(), k.inverse_length);
+  };
+  if (k.grid->has_one_tile()) {
+    write(hn::ScalableTag<double>(), p.begin, p.end);
+  } else {
+    for (std::size_t s = p.begin; s < p.end; s += kCluster) write(State(), s, s + kCluster);
+  }
   if (out.diffused.size() == 0) return;
   T* HWY_RESTRICT diffused = out.diffused.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {
@@ -375,9 +376,62 @@ inline void sum_energy(const ParticleSpan& p, const Method& method, Energy& out)
   out.internal += mass * c_sq * hn::GetLane(hn::SumOfLanes(d, compressions));
 }
 
+/// The first cluster of a row that reaches `left`, or its end. Clusters lie about evenly along a
+/// strip, so that it is mostly in the vector that is tried first.
+inline std::uint32_t first_near(const BoxesView& boxes, const Surroundings::Row& row) {
+  const hn::CappedTag<float, 16> d;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
+  const float* const reach = boxes.x_max_before;
+  const float low = boxes.x_min_after[row.begin];
+  const float length = reach[row.end - 1] - low;
+  const auto count = static_cast<float>(row.end - row.begin);
+  const float guess = (row.left - low) / length * count - 0.5F * static_cast<float>(lanes);
+  // Written so that no number, too, is a guess within the row.
+  const float most = count - 1.0F;
+  const auto at =
+      row.begin + static_cast<std::uint32_t>(guess > 0.0F ? std::min(guess, most) : 0.0F);
+  if (at == row.begin || reach[at - 1] < row.left) {
+    const auto found = hn::FindFirstTrue(d, hn::LoadU(d, reach + at) >= hn::Set(d, row.left));
+    if (found >= 0) return std::min(row.end, at + static_cast<std::uint32_t>(found));
+  }
+  const float* const first = std::lower_bound(reach + row.begin, reach + row.end, row.left);
+  return static_cast<std::uint32_t>(first - reach);
+}
+
+/// Clusters listed before they are summed over: of some rows, so that the two loops seldom end.
+constexpr std::size_t kListed = 64;
+
+/// Calls body(clusters) for those near the point, in memory order.
+template <class Body>
+HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body) {
+  const hn::CappedTag<float, 16> d;
+  const hn::RebindToUnsigned<decltype(d)> d_number;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
+  const auto numbers = hn::Iota(d_number, 0);
+  const BoxesView& boxes = around.boxes;
+  std::uint32_t listed[kListed + 16];
+  std::size_t count = 0;
+  for (const Surroundings::Row& row : around.rows) {
+    const auto left = hn::Set(d, row.left);
+    const auto right = hn::Set(d, row.right);
+    for (std::uint32_t j = first_near(boxes, row); j < row.end; j += lanes) {
+      if (boxes.x_min_after[j] > row.right) break;
+      const auto beside =
+          hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
+      const auto near = hn::RebindMask(d_number, hn::And(beside, hn::FirstN(d, row.end - j)));
+      hn::StoreU(hn::Compress(numbers + hn::Set(d_number, j), near), d_number, listed + count);
+      count += hn::CountTrue(d_number, near);
+      if (count >= kListed) {
+        body(std::span<const std::uint32_t>(listed, count));
+        count = 0;
+      }
+    }
+  }
+  body(std::span<const std::uint32_t>(listed, count));
+}
+
 template <class Shape>
-void sum_around(const Particles& p, std::size_t begin, std::size_t end, const Surroundings& around,
-                PointSums& out) {
+PointSums sum_around(const Particles& p, const Surroundings& around) {
   const State d;
   const StateVec inverse_h = hn::Set(d, 1.0 / around.smoothing_length);
   const StateVec x = hn::Set(d, around.point.x());
@@ -386,7 +440,7 @@ void sum_around(const Particles& p, std::size_t begin, std::size_t end, const Su
   StateVec kernel = hn::Zero(d);
   StateVec excess = hn::Zero(d);
   StateVec volumes = hn::Zero(d);
-  for (std::size_t s = begin; s < end; s += hn::Lanes(d)) {
+  const auto add = [&](std::size_t s) HWY_ATTR {
     const auto used = hn::LoadU(d, p.id.data() + s) >= hn::Zero(d);
     const StateVec dx = (hn::LoadU(d, p.x.data() + s) - x) * inverse_h;
     const StateVec dy = (hn::LoadU(d, p.y.data() + s) - y) * inverse_h;
@@ -395,10 +449,15 @@ void sum_around(const Particles& p, std::size_t begin, std::size_t end, const Su
     kernel = kernel + w;
     excess = excess + w * e;
     volumes = volumes + w / (rho_0 + e);
-  }
-  out.kernel += hn::GetLane(hn::SumOfLanes(d, kernel));
-  out.excess += hn::GetLane(hn::SumOfLanes(d, excess));
-  out.volumes += hn::GetLane(hn::SumOfLanes(d, volumes));
+  };
+  for_clusters_around(around, [&](std::span<const std::uint32_t> clusters) HWY_ATTR {
+    for (const std::uint32_t cluster : clusters) {
+      const std::size_t first = kCluster * cluster;
+      for (std::size_t s = first; s < first + kCluster; s += hn::Lanes(d)) add(s);
+    }
+  });
+  return {hn::GetLane(hn::SumOfLanes(d, kernel)), hn::GetLane(hn::SumOfLanes(d, excess)),
+          hn::GetLane(hn::SumOfLanes(d, volumes))};
 }
 
 template <typename T>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "engine/sph/layout.hpp"
@@ -89,9 +90,18 @@ struct PairScales {
 
 /// A point to sum around.
 struct Surroundings {
+  /// A strip, by its clusters, and which part of it is near the point.
+  struct Row {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+    float left = 0.0F;  ///< h
+    float right = 0.0F;
+  };
   Vec point = Vec::Zero();         ///< m
-  double smoothing_length = 0.0;   ///< h, m
+  double smoothing_length = 0.0;   ///< h of the kernel, m
   double reference_density = 0.0;  ///< kg/m^3
+  BoxesView boxes;
+  std::span<const Row> rows;
 };
 
 /// Sums over the particles around a point, with the kernel's value but for its constant and 1/h^2.
@@ -101,8 +111,7 @@ struct PointSums {
   double volumes = 0.0;  ///< W/rho, m^3/kg
 };
 
-using SumAround = void (*)(const Particles&, std::size_t begin, std::size_t end,
-                           const Surroundings&, PointSums&);
+using SumAround = PointSums (*)(const Particles&, const Surroundings&);
 
 /// The loops over particles, one SIMD target; T is the type of the pair sums. All state is double.
 template <typename T>
@@ -136,7 +145,7 @@ struct Updates {
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;
   /// Largest acceleration of the rates.
   void (*measure_rates)(const ParticleSpan&, const Rates<T>&, Motion&) = nullptr;
-  /// Adds what is around a point of the particles in the slots [begin, end), whole clusters.
+  /// Over the clusters of the rows that are near the point, in memory order.
   SumAround sum_around = nullptr;
   /// Adds the energy of the particles.
   void (*sum_energy)(const ParticleSpan&, const Method&, Energy&) = nullptr;

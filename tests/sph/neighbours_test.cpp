@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/sph/simd_target.hpp"
 #include "tests/sph/plain_sums.hpp"
 #include "tests/sph/test_fluids.hpp"
 
@@ -26,17 +27,18 @@ Method pair_method(Precision precision) {
 
 /// Rates of `steps` steps of the leap-frog against all pairs.
 void expect_all_pairs(const Method& m, const Fluid& start, const std::vector<Vec>& walls, int steps,
-                      const std::string& what) {
+                      const std::string& target, const std::string& what) {
   // Mixed precision resolves 3e-5 h where a domain has several origins, and better in a small one.
   const bool vast = m.domain.size().x() > 1024.0 * kH;
   const double single = vast ? 1e-4 : 1e-5;
   const double eps = m.precision == Precision::mixed ? single : 1e-10;
-  Solver solver(m, start_from(start), walls, {});
+  Solver solver(m, start_from(start), walls, {1, target});
   for (int n = 0; n < steps; ++n) {
     const Fluid fluid = fluid_of(solver.state());
     const PlainRates expected = plain_rates(m, fluid, walls, plain_wall_pressures(m, fluid, walls));
     const FluidRates seen = rates_of_next_step(solver);
-    const std::string where = what + ", " + name_of(m.precision) + ", step " + std::to_string(n);
+    const std::string where =
+        what + ", " + name_of(m.precision) + ", " + target + ", step " + std::to_string(n);
     expect_near(seen.acceleration, expected.acceleration, eps * expected.acceleration_size,
                 where + ": acceleration");
     expect_near(seen.density, expected.density, eps * expected.density_size,
@@ -49,7 +51,9 @@ void expect_all_pairs_in_both(Method m, const Fluid& fluid, const std::vector<Ve
                               int steps, const std::string& what) {
   for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
     m.precision = precision;
-    expect_all_pairs(m, fluid, walls, steps, what);
+    for (const std::string& target : simd_targets()) {
+      expect_all_pairs(m, fluid, walls, steps, target, what);
+    }
   }
 }
 
