@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "engine/store/series.hpp"
@@ -25,6 +26,11 @@ inline constexpr double kFilterReach = 3.0;
 /// second. O(samples * window). Throws std::invalid_argument when tau is not a positive number or
 /// the series has no such column.
 [[nodiscard]] Filtered gaussian_filter(const Series& series, double tau, std::size_t column = 0);
+
+/// The same for series that were sampled together, one result each: the kernel is summed over once
+/// for all. Throws std::invalid_argument as well when their times or durations differ.
+[[nodiscard]] std::vector<Filtered> gaussian_filter(std::span<const Series* const> together,
+                                                    double tau, std::size_t column = 0);
 
 /// Filtered values after this time (s) will still change when the run goes on: the filter looks
 /// 3 tau ahead. Minus infinity for an empty series.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/scene/parse.hpp"
@@ -18,7 +19,11 @@ namespace {
 /// Far more than any text of a job needs.
 constexpr std::size_t kMaxTextBytes = 1024 * 1024;
 
-SensorSummary summarise(const Series& series, std::size_t column, double tau) {
+bool is_filtered(const Series& series) { return series.kind == "pressure" && series.size() > 0; }
+
+/// `smooth` is the filtered column, empty where it is not filtered.
+SensorSummary summarise(const Series& series, std::size_t column,
+                        const std::vector<double>& smooth) {
   const std::size_t width = series.columns.size();
   SensorSummary summary;
   summary.name = series.name;
@@ -26,12 +31,10 @@ SensorSummary summarise(const Series& series, std::size_t column, double tau) {
   summary.column = series.columns[column].name;
   summary.unit = series.columns[column].unit;
   summary.samples = series.size();
-  const bool filtered = series.kind == "pressure" && series.size() > 0;
-  const std::vector<double> smooth =
-      filtered ? gaussian_filter(series, tau, column).value : std::vector<double>{};
   for (std::size_t n = 0; n < series.size(); ++n) {
-    if (std::isnan(series.values[n * width + column])) continue;
-    const double value = filtered ? smooth[n] : series.values[n * width + column];
+    const double raw = series.values[n * width + column];
+    if (std::isnan(raw)) continue;
+    const double value = smooth.empty() ? raw : smooth[n];
     if (!summary.first_wet) summary.first_wet = series.time[n];
     if (!summary.highest || value > *summary.highest) {
       summary.highest = value;
@@ -40,6 +43,49 @@ SensorSummary summarise(const Series& series, std::size_t column, double tau) {
     summary.last = value;
   }
   return summary;
+}
+
+/// Sensors of one table, or as good as that.
+bool sampled_together(const Series& a, const Series& b) {
+  return a.time == b.time && a.duration == b.duration && a.columns.size() == b.columns.size();
+}
+
+/// The filtered column of every series that is filtered, the others' empty. What was sampled
+/// together is filtered together.
+std::vector<std::vector<double>> smooth_columns(const std::vector<Series>& all, std::size_t column,
+                                                double tau) {
+  std::vector<std::vector<const Series*>> groups;
+  for (const Series& series : all) {
+    if (!is_filtered(series) || column >= series.columns.size()) continue;
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& members) {
+      return sampled_together(*members.front(), series);
+    });
+    (group == groups.end() ? groups.emplace_back() : *group).push_back(&series);
+  }
+  std::vector<std::vector<double>> smooth(all.size());
+  for (const std::vector<const Series*>& group : groups) {
+    std::vector<Filtered> filtered = gaussian_filter(group, tau, column);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      smooth[static_cast<std::size_t>(group[k] - all.data())] = std::move(filtered[k].value);
+    }
+  }
+  return smooth;
+}
+
+std::vector<SensorSummary> summarise_all(const std::vector<Series>& all, double tau) {
+  std::size_t columns = 0;
+  for (const Series& series : all) columns = std::max(columns, series.columns.size());
+  std::vector<std::vector<std::vector<double>>> smooth;  // by column
+  for (std::size_t column = 0; column < columns; ++column) {
+    smooth.push_back(smooth_columns(all, column, tau));
+  }
+  std::vector<SensorSummary> summaries;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t column = 0; column < all[i].columns.size(); ++column) {
+      summaries.push_back(summarise(all[i], column, smooth[column][i]));
+    }
+  }
+  return summaries;
 }
 
 /// What the scene is compared with: the reference it names, else an experiment of its shape.
@@ -81,11 +127,7 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
                    const nlohmann::ordered_json& outcome, double tau) {
   Report report{scene, tau, {}, std::nullopt, std::nullopt, outcome, {}, {}};
   if (!report.outcome.is_object()) report.outcome = nullptr;
-  for (const Series& one : series) {
-    for (std::size_t column = 0; column < one.columns.size(); ++column) {
-      report.sensors.push_back(summarise(one, column, tau));
-    }
-  }
+  report.sensors = summarise_all(series, tau);
   if (const Reference* reference = experiment_of(scene)) {
     report.evidence = compare(scene, series, *reference, tau);
   }
