@@ -75,13 +75,24 @@ Probe FluidProbe::surface_height(double x) const {
   for_each_in(whole, [&](std::size_t s) {
     if (std::abs(particles_.x[s] - x) < support) column.push_back(particles_.position(s));
   });
-  // Highest first, so that the search ends at the surface.
-  std::sort(column.begin(), column.end(), [](const Vec& a, const Vec& b) {
-    return a.y() != b.y() ? a.y() > b.y() : a.x() < b.x();
-  });
+  // Highest first, so that the search ends at the surface; what lies deeper is never sorted.
+  const auto lower = [](const Vec& a, const Vec& b) {
+    return a.y() != b.y() ? a.y() < b.y() : a.x() > b.x();
+  };
+  std::make_heap(column.begin(), column.end(), lower);
+  std::vector<Vec> top;  // sorted
+  // As far as the first below y.
+  const auto sort_down_to = [&](double y) {
+    while (!column.empty() && (top.empty() || top.back().y() >= y)) {
+      std::pop_heap(column.begin(), column.end(), lower);
+      top.push_back(column.back());
+      column.pop_back();
+    }
+  };
   const auto filled = [&](double y) {
+    sort_down_to(y - support);
     double sum = 0.0;
-    for (const Vec& p : column) {
+    for (const Vec& p : top) {
       if (p.y() > y + support) continue;
       if (p.y() < y - support) break;
       sum += volume * kernel_value(method_.kernel, (p - Vec(x, y)).squaredNorm() / (h * h));
@@ -89,11 +100,13 @@ Probe FluidProbe::surface_height(double x) const {
     return sum;
   };
   constexpr double kSurface = 0.5;
-  for (const Vec& p : column) {
-    const double at_particle = filled(p.y());
+  sort_down_to(std::numeric_limits<double>::infinity());
+  for (std::size_t n = 0; n < top.size(); ++n) {
+    const double y = top[n].y();
+    const double at_particle = filled(y);
     if (at_particle < kSurface) continue;
-    double low = p.y();
-    double high = p.y() + support;
+    double low = y;
+    double high = y + support;
     for (int halving = 0; halving < 40; ++halving) {
       const double middle = 0.5 * (low + high);
       (filled(middle) >= kSurface ? low : high) = middle;

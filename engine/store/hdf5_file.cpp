@@ -205,9 +205,18 @@ std::string unique_name() {
   return fmt::format("memory-{}", number.fetch_add(1));
 }
 
+/// What HDF5 asks of memory that is not its own, whatever it does with it.
+struct ForeignMemory {
+  using Operation = H5FD_file_image_op_t;
+
+  static herr_t keep(void*, Operation, void*) { return 0; }
+  static void* share(void* self) { return self; }
+  static herr_t leave(void*) { return 0; }
+};
+
 /// The memory of a file in memory, kept beyond the file's closing. H5Fget_file_image of HDF5 1.10.8
 /// would give the file as it is while open, with a flag cleared and so a checksum that is wrong.
-class FileMemory {
+class FileMemory : ForeignMemory {
  public:
   FileMemory() = default;
   FileMemory(const FileMemory&) = delete;
@@ -224,8 +233,6 @@ class FileMemory {
   }
 
  private:
-  using Operation = H5FD_file_image_op_t;
-
   static void* allocate(std::size_t size, Operation, void* self) {
     return resize(nullptr, size, H5FD_FILE_IMAGE_OP_FILE_RESIZE, self);
   }
@@ -242,11 +249,35 @@ class FileMemory {
     }
     return bytes.data();
   }
-  static herr_t keep(void*, Operation, void*) { return 0; }
-  static void* share(void* self) { return self; }
-  static herr_t leave(void*) { return 0; }
 
   Bytes bytes_;
+};
+
+/// An image that is read where it lies. HDF5 would make two copies of it, one when it is told of
+/// the image and one when it opens it.
+class BorrowedImage : ForeignMemory {
+ public:
+  explicit BorrowedImage(ByteSpan image) : image_(image) {}
+  BorrowedImage(const BorrowedImage&) = delete;
+  BorrowedImage& operator=(const BorrowedImage&) = delete;
+  ~BorrowedImage() = default;
+
+  [[nodiscard]] H5FD_file_image_callbacks_t callbacks() {
+    return {lend, pass_on, refuse, keep, share, leave, this};
+  }
+
+ private:
+  /// The file is opened for reading alone; HDF5's signatures lack the const.
+  static void* lend(std::size_t size, Operation, void* self) {
+    const ByteSpan image = static_cast<BorrowedImage*>(self)->image_;
+    return size == image.size() ? const_cast<std::byte*>(image.data()) : nullptr;
+  }
+  static void* pass_on(void* to, const void* from, std::size_t, Operation, void*) {
+    return to == from ? to : nullptr;
+  }
+  static void* refuse(void*, std::size_t, Operation, void*) { return nullptr; }
+
+  ByteSpan image_;
 };
 
 }  // namespace
@@ -415,12 +446,13 @@ Bytes Hdf5Writer::image() { return impl_->image(); }
 
 class Hdf5Reader::Impl {
  public:
-  explicit Impl(ByteSpan image) : image_size_(image.size()) {
+  explicit Impl(ByteSpan image) : image_size_(image.size()), memory_(image) {
     silence();
     const Handle access =
         check_.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "set up", "a file in memory");
     check_.require(H5Pset_fapl_core(access.get(), kRoom, false) >= 0, "set up", "memory");
-    // HDF5 takes its own copy of the bytes; its signature lacks the const.
+    H5FD_file_image_callbacks_t callbacks = memory_.callbacks();
+    check_.require(H5Pset_file_image_callbacks(access.get(), &callbacks) >= 0, "set up", "memory");
     auto* bytes = const_cast<std::byte*>(image.data());
     check_.require(H5Pset_file_image(access.get(), bytes, image.size()) >= 0, "take", "the image");
     file_ = check_.own(H5Fopen(unique_name().c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose,
@@ -600,6 +632,7 @@ class Hdf5Reader::Impl {
 
   Checker check_{StorageFault::corrupt};
   std::uint64_t image_size_;
+  BorrowedImage memory_;
   Handle file_;
 };
 

@@ -61,7 +61,7 @@ class Hdf5Writer {
 
 /// Reads an HDF5 file from its image in memory. HDF5 1.10 may crash on an altered image: give it
 /// only what `read_verified` has passed. Throws StorageError: corrupt, with the name of what is
-/// missing or of another type. For one thread at a time.
+/// missing or of another type. The image must outlive it. For one thread at a time.
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(ByteSpan image);
