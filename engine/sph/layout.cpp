@@ -92,8 +92,8 @@ StripLists particles_of_strips(ThreadTeam& team, const Grid& grid, std::span<con
   return lists;
 }
 
-/// The particles of a strip by (x, y, id): a counting sort by bin, then an insertion sort, for each
-/// bin holds a few. Linear.
+/// The particles of a strip by (x, y, id): a counting sort by bin, then an insertion sort. Linear
+/// while a bin holds a few, or what it holds comes nearly sorted.
 void sort_strip(const Grid& grid, std::span<const double> x, std::span<const double> y,
                 std::span<const double> id, std::span<const std::uint32_t> particles,
                 std::span<std::uint32_t> sorted) {
@@ -159,6 +159,7 @@ std::size_t Grid::cell(double distance, double size, std::size_t count) {
 }
 
 Grid::Tile Grid::tile(const Vec& position) const {
+  if (one_tile_) return {};
   // A place that is not a number is somewhere too.
   const auto index = [](double n) {
     return n > -1e6 ? static_cast<int>(std::floor(std::min(n, 1e6))) : -1'000'000;

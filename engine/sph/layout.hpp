@@ -46,7 +46,7 @@ class Grid {
     return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
   }
   [[nodiscard]] double tile_size() const { return tile_size_; }
-  /// Whether all particles in the domain are in one tile.
+  /// Whether there is no other tile than one.
   [[nodiscard]] bool has_one_tile() const { return one_tile_; }
 
  private:

@@ -32,7 +32,7 @@ class StripSearch {
   /// are left out.
   void start(float low, float high, std::size_t first_strip) {
     rows_.clear();
-    room_ = kSearchTail;
+    room_ = kTail;
     const std::size_t strips = layout_.strip_begin.size() - 1;
     for (std::size_t s = std::max(first_strip, bounds_.first_strip(low - range_));
          s < strips && bounds_.strip_y_min_after[s] <= high + range_; ++s) {
@@ -146,7 +146,7 @@ void build_chunk(const Sweeps<T>& sweeps, const PairRange<T>& range, const NewPa
     if (!range.one_tile) note_tiles(bounds.tile[c], other.bounds, {candidates.data(), found});
     if (entries.size() < chunk.begin[n] + found) entries.resize(2 * (chunk.begin[n] + found));
     const std::size_t kept =
-        sweeps.prune({self.tracks, other.tracks, kLeeway<T>, range.cut_off, range.tile_size, c,
+        sweeps.prune({self.tracks, other.tracks, range.cut_off, range.tile_size, c,
                       candidates.data(), found, entries.data() + chunk.begin[n]});
     chunk.begin[n + 1] = chunk.begin[n] + static_cast<std::uint32_t>(kept);
   }

@@ -39,7 +39,7 @@ struct ClusterBounds {
 
   /// Room for the boxes of all clusters.
   void resize(const Layout& layout);
-  /// The boxes of the clusters [begin, end). Lengths in m.
+  /// The boxes of the clusters [begin, end) by their tracks; the smoothing length in m.
   template <typename T>
   void assign_boxes(std::size_t begin, std::size_t end, const Grid& grid, double smoothing_length,
                     const TracksView<T>& tracks);
@@ -71,12 +71,12 @@ struct PairSet {
   TracksView<T> tracks;
 };
 
-/// Lengths of the search, in h.
+/// How far the search goes.
 template <typename T>
 struct PairRange {
-  T cut_off;
-  T tile_size;
-  bool one_tile;  ///< holds all particles of all sets
+  T cut_off;      ///< h
+  T tile_size;    ///< h
+  bool one_tile;  ///< Grid::has_one_tile()
 };
 
 /// A list to build: for every cluster of `self` the clusters of `other` of which a particle may

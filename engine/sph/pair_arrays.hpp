@@ -14,7 +14,10 @@ inline constexpr std::size_t kCluster = 4;
 /// Room for a little more than `size`: the number of slots changes with every order.
 [[nodiscard]] inline std::size_t with_slack(std::size_t size) { return size + size / 128; }
 
-/// A growing aligned array whose tail may be read, not used, one vector past the end.
+/// Values of a whole vector on the widest target: as many past the end may be read, not used.
+inline constexpr std::size_t kTail = 16;
+
+/// A growing aligned array with a tail.
 template <typename T>
 class AlignedArray {
  public:
@@ -34,7 +37,6 @@ class AlignedArray {
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
-  static constexpr std::size_t kTail = 16;
   hwy::AlignedFreeUniquePtr<T[]> data_;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
@@ -89,7 +91,7 @@ struct PairArrays {
   }
 };
 
-/// Boxes that hold the clusters of a set, in h (ClusterBounds). A vector past the end may be read.
+/// Boxes that hold the clusters of a set, in h (ClusterBounds), with tails.
 struct BoxesView {
   const float* x_min = nullptr;
   const float* x_max = nullptr;

@@ -20,6 +20,7 @@ void FluidProbe::for_strips_in(float low, float high, const Body& body) const {
   for (std::size_t strip = bounds_.first_strip(low); strip + 1 < layout_.strip_begin.size();
        ++strip) {
     if (bounds_.strip_y_min_after[strip] > high) break;
+    if (layout_.strip_begin[strip] == layout_.strip_begin[strip + 1]) continue;
     if (bounds_.strip_y_max[strip] >= low && bounds_.strip_y_min[strip] <= high) body(strip);
   }
 }

@@ -442,7 +442,7 @@ void sum_reinitialisation(const SweepTask<T>& task) {
 
 /// Rows hold a few clusters that are near, a vector of them or less.
 inline std::size_t search_boxes(const SearchTask& task) {
-  const hn::CappedTag<float, kSearchTail> d;
+  const hn::CappedTag<float, kTail> d;
   const hn::RebindToUnsigned<decltype(d)> d_entry;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   const auto numbers = hn::Iota(d_entry, 0);
@@ -487,9 +487,9 @@ struct TrackOf {
 };
 
 template <typename T, class V, class Load>
-HWY_INLINE TrackOf<V> load_track(const TracksView<T>& tracks, std::size_t slot,
-                                 const Leeway<T>& leeway, const Load& load) {
+HWY_INLINE TrackOf<V> load_track(const TracksView<T>& tracks, std::size_t slot, const Load& load) {
   const typename Blocks<T>::D d;
+  constexpr Leeway<T> leeway = kLeeway<T>;
   const V half_life = hn::Set(d, T{0.5} * leeway.lifetime);
   const V u = load(tracks.u + slot);
   const V v = load(tracks.v + slot);
@@ -508,11 +508,10 @@ std::size_t prune_list(const PruneTask<T>& task) {
   constexpr std::size_t parts = kCluster / B::i_count;
   const auto of_i = [](const T* from) HWY_ATTR { return load_i(from); };
   const auto of_j = [](const T* from) HWY_ATTR { return load_j(from); };
-  const V half_life = hn::Set(d, T{0.5} * task.leeway.lifetime);
+  const V half_life = hn::Set(d, T{0.5} * kLeeway<T>.lifetime);
   TrackOf<V> i[parts];
   for (std::size_t part = 0; part < parts; ++part) {
-    i[part] =
-        load_track<T, V>(task.self, kCluster * task.cluster + part * B::i_count, task.leeway, of_i);
+    i[part] = load_track<T, V>(task.self, kCluster * task.cluster + part * B::i_count, of_i);
     i[part].leeway = i[part].leeway + hn::Set(d, task.cut_off);
   }
   std::size_t kept = 0;
@@ -522,7 +521,7 @@ std::size_t prune_list(const PruneTask<T>& task) {
     const std::uint32_t code = entry >> PairList::kShiftBit;
     bool near = false;
     for (std::size_t k = 0; k < B::j_vectors; ++k) {
-      const auto j = load_track<T, V>(task.other, slot + k * B::j_lanes, task.leeway, of_j);
+      const auto j = load_track<T, V>(task.other, slot + k * B::j_lanes, of_j);
       for (std::size_t part = 0; part < parts; ++part) {
         const V dx = i[part].x + hn::Set(d, shift.x[code]) - j.x;
         const V dy = i[part].y + hn::Set(d, shift.y[code]) - j.y;

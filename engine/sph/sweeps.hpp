@@ -53,15 +53,13 @@ struct SearchTask {
   float left_after{};                    ///< least `left` from cluster i on
   std::uint32_t first = 0;               ///< clusters j before it are left out
   std::span<Row> rows;                   ///< of the strips near i; `next` is moved on
-  std::uint32_t* out = nullptr;  ///< entries; room for all clusters of the rows and kSearchTail
+  std::uint32_t* out = nullptr;          ///< entries; room for all clusters of the rows and kTail
 };
-inline constexpr std::size_t kSearchTail = 16;
 
 /// A cluster i whose list of possible neighbours among the clusters j is wanted.
 template <typename T>
 struct PruneTask {
   TracksView<T> self, other;
-  Leeway<T> leeway;
   T cut_off{};  ///< support in h
   T tile_size{};
   std::size_t cluster = 0;

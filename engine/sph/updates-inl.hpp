@@ -379,7 +379,7 @@ inline void sum_energy(const ParticleSpan& p, const Method& method, Energy& out)
 /// The first cluster of a row that reaches `left`, or its end. Clusters lie about evenly along a
 /// strip, so that it is mostly in the vector that is tried first.
 inline std::uint32_t first_near(const BoxesView& boxes, const Surroundings::Row& row) {
-  const hn::CappedTag<float, 16> d;
+  const hn::CappedTag<float, kTail> d;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   const float* const reach = boxes.x_max_before;
   const float low = boxes.x_min_after[row.begin];
@@ -404,12 +404,12 @@ constexpr std::size_t kListed = 64;
 /// Calls body(clusters) for those near the point, in memory order.
 template <class Body>
 HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body) {
-  const hn::CappedTag<float, 16> d;
+  const hn::CappedTag<float, kTail> d;
   const hn::RebindToUnsigned<decltype(d)> d_number;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   const auto numbers = hn::Iota(d_number, 0);
   const BoxesView& boxes = around.boxes;
-  std::uint32_t listed[kListed + 16];
+  std::uint32_t listed[kListed + kTail];
   std::size_t count = 0;
   for (const Surroundings::Row& row : around.rows) {
     const auto left = hn::Set(d, row.left);

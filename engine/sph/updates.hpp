@@ -90,11 +90,12 @@ struct PairScales {
 
 /// A point to sum around.
 struct Surroundings {
-  /// A strip, by its clusters, and which part of it is near the point.
+  /// A strip, by its clusters, of which there are some, and the part of it that is near the point,
+  /// in smoothing lengths of the method.
   struct Row {
     std::uint32_t begin = 0;
     std::uint32_t end = 0;
-    float left = 0.0F;  ///< h
+    float left = 0.0F;
     float right = 0.0F;
   };
   Vec point = Vec::Zero();         ///< m

@@ -58,12 +58,13 @@ class WriteArchive {
   Hdf5Writer writer_;
 };
 
-/// Fills everything it meets from an HDF5 image, and knows in the end what it did not meet. Throws
-/// StorageError: corrupt.
+/// Fills everything it meets from an HDF5 image, which must outlive it, and knows in the end what
+/// it did not meet. Throws StorageError: corrupt.
 class ReadArchive {
  public:
   static constexpr bool kReads = true;
   explicit ReadArchive(ByteSpan image) : reader_(image), largest_count_(image.size()) {}
+  explicit ReadArchive(Bytes&& image) = delete;
 
   template <class T>
   void attribute(const std::string& path, const std::string& name, T& value) {

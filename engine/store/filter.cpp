@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace sluice {
 namespace {
@@ -16,11 +17,14 @@ double duration_of(const Series& series, std::size_t n) {
   return series.size() > 1 ? series.duration[1] : 1.0;
 }
 
-void require_filter_arguments(const Series& series, double tau, std::size_t column) {
+void require_tau(double tau) {
   if (!(tau > 0.0) || !std::isfinite(tau)) {
     throw std::invalid_argument(
         fmt::format("the filter time tau is {}, but must be a positive number of seconds", tau));
   }
+}
+
+void require_column(const Series& series, std::size_t column) {
   if (column >= series.columns.size()) {
     throw std::invalid_argument(fmt::format("series {} has {} columns, no column {}", series.name,
                                             series.columns.size(), column));
@@ -35,54 +39,64 @@ void require_together(const Series& first, const Series& other) {
 }
 
 /// One column of a few series, [samples, series], so that the loops over pairs of samples run along
-/// memory: few enough to stay in the first cache with all samples of a window.
-struct Block {
+/// memory; few, so that what a window holds of them is soon met again in a cache.
+class Block {
+ public:
   static constexpr std::size_t kMost = 32;
 
-  std::size_t width;
-  std::vector<double> value;   ///< 0 where dry; then what the filter makes of it
-  std::vector<double> wet;     ///< 1, or 0 where dry
-  std::vector<double> sum;     ///< above the line of eq. 12
-  std::vector<double> weight;  ///< below it
-
-  Block(std::span<const Series* const> series, std::size_t column) : width(series.size()) {
+  Block(std::span<const Series* const> series, std::size_t column) : width_(series.size()) {
     const std::size_t samples = series[0]->size();
-    for (auto* a : {&value, &wet, &sum, &weight}) a->assign(samples * width, 0.0);
-    for (std::size_t s = 0; s < width; ++s) {
+    for (auto* a : {&raw_, &sum_, &weight_}) a->assign(samples * width_, 0.0);
+    for (std::size_t s = 0; s < width_; ++s) {
       const std::size_t columns = series[s]->columns.size();
       for (std::size_t n = 0; n < samples; ++n) {
-        const double found = series[s]->values[n * columns + column];
-        if (std::isnan(found)) continue;
-        value[n * width + s] = found;
-        wet[n * width + s] = 1.0;
+        raw_[n * width_ + s] = series[s]->values[n * columns + column];
       }
     }
   }
 
   /// Adds the samples n, each with this weight, to the sums for m.
-  void add(std::size_t m, std::size_t n, double of_sample) {
-    double* const to = sum.data() + m * width;
-    double* const below = weight.data() + m * width;
-    const double* const values = value.data() + n * width;
-    const double* const counts = wet.data() + n * width;
-    for (std::size_t s = 0; s < width; ++s) {
-      const double part = of_sample * counts[s];
-      to[s] += part * values[s];
-      below[s] += part;
+  void add(std::size_t m, std::size_t n, double weight) {
+    double* const above = sum_.data() + m * width_;
+    double* const below = weight_.data() + m * width_;
+    const double* const raw = raw_.data() + n * width_;
+    for (std::size_t s = 0; s < width_; ++s) {
+      const bool dry = std::isnan(raw[s]);
+      above[s] += dry ? 0.0 : weight * raw[s];
+      below[s] += dry ? 0.0 : weight;
     }
   }
 
-  [[nodiscard]] Filtered result(std::size_t s, double tau) const {
+  /// The quotients of the sums, by series.
+  [[nodiscard]] std::vector<Filtered> take(double tau) {
+    raw_ = {};
     const double unit_integral = std::sqrt(std::numbers::pi) * tau;
-    Filtered filtered;
-    for (std::size_t at = s; at < sum.size(); at += width) {
-      const bool any = weight[at] > 0.0;
-      filtered.value.push_back(any ? sum[at] / weight[at]
-                                   : std::numeric_limits<double>::quiet_NaN());
-      filtered.weight.push_back(any ? weight[at] / unit_integral : 0.0);
+    for (std::size_t at = 0; at < sum_.size(); ++at) {
+      const bool wet = weight_[at] > 0.0;
+      sum_[at] = wet ? sum_[at] / weight_[at] : std::numeric_limits<double>::quiet_NaN();
+      weight_[at] = wet ? weight_[at] / unit_integral : 0.0;
     }
-    return filtered;
+    std::vector<Filtered> all(width_);
+    if (width_ == 1) {
+      all[0] = {std::move(sum_), std::move(weight_)};
+      return all;
+    }
+    for (std::size_t s = 0; s < width_; ++s) {
+      all[s].value.reserve(sum_.size() / width_);
+      all[s].weight.reserve(sum_.size() / width_);
+      for (std::size_t at = s; at < sum_.size(); at += width_) {
+        all[s].value.push_back(sum_[at]);
+        all[s].weight.push_back(weight_[at]);
+      }
+    }
+    return all;
   }
+
+ private:
+  std::size_t width_;
+  std::vector<double> raw_;
+  std::vector<double> sum_;     // above the line of eq. 12
+  std::vector<double> weight_;  // below it
 };
 
 void sum_windows(const Series& times, double tau, Block& block) {
@@ -104,23 +118,23 @@ void sum_windows(const Series& times, double tau, Block& block) {
 
 std::vector<Filtered> gaussian_filter(std::span<const Series* const> together, double tau,
                                       std::size_t column) {
+  require_tau(tau);
   for (const Series* const one : together) {
-    require_filter_arguments(*one, tau, column);
+    require_column(*one, column);
     require_together(*together[0], *one);
   }
   std::vector<Filtered> all;
   for (std::size_t begin = 0; begin < together.size(); begin += Block::kMost) {
-    const auto part = together.subspan(begin, std::min(Block::kMost, together.size() - begin));
-    Block block(part, column);
+    Block block(together.subspan(begin, std::min(Block::kMost, together.size() - begin)), column);
     sum_windows(*together[0], tau, block);
-    for (std::size_t s = 0; s < part.size(); ++s) all.push_back(block.result(s, tau));
+    for (Filtered& one : block.take(tau)) all.push_back(std::move(one));
   }
   return all;
 }
 
 Filtered gaussian_filter(const Series& series, double tau, std::size_t column) {
   const Series* const one = &series;
-  return gaussian_filter({&one, 1}, tau, column).front();
+  return std::move(gaussian_filter({&one, 1}, tau, column).front());
 }
 
 double provisional_after(const Series& series, double tau) {

@@ -65,6 +65,7 @@ class Hdf5Writer {
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(ByteSpan image);
+  explicit Hdf5Reader(Bytes&& image) = delete;
   ~Hdf5Reader();
   Hdf5Reader(Hdf5Reader&&) noexcept;
   Hdf5Reader& operator=(Hdf5Reader&&) noexcept;

@@ -134,6 +134,29 @@ Method vast_method(Precision precision) {
   return m;
 }
 
+TEST(Neighbours, AreThoseOfBeforeBesideAParticleFarOutsideTheDomain) {
+  Dice dice(48);
+  const Fluid fluid = random_block(dice, {-0.8, -0.8}, 16, 10, kH, 0.2, 1.0, 10.0);
+  Fluid more = fluid;
+  more.add({-4000.0 * kH, -0.75}, {0.0, 0.0}, 0.0);
+  for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
+    for (const std::string& target : simd_targets()) {
+      const Method m = pair_method(precision);
+      Solver alone(m, start_from(fluid), {}, {1, target});
+      Solver beside(m, start_from(more), {}, {1, target});
+      alone.step();
+      beside.step();
+      const Fluid expected = fluid_of(alone.state());
+      const Fluid seen = fluid_of(beside.state());
+      ASSERT_EQ(seen.size(), expected.size()) << "what is outside is retired";
+      const double eps = precision == Precision::mixed ? 1e-6 : 1e-12;
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        EXPECT_NEAR((seen.v[i] - expected.v[i]).norm(), 0.0, eps) << target << " " << i;
+      }
+    }
+  }
+}
+
 TEST(Neighbours, AreAllFoundAcrossTheTilesOfAVastDomain) {
   Dice dice(46);
   // 512 h is 51.2 m: patches that straddle each of these edges, corners among them.

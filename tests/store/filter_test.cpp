@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 namespace sluice {
 namespace {
@@ -26,7 +31,7 @@ Series series_of(std::vector<double> time, std::vector<double> values) {
   return series;
 }
 
-Series sampled(int count, double interval, double (*value)(double)) {
+Series sampled(int count, double interval, const std::function<double(double)>& value) {
   std::vector<double> time, values;
   for (int n = 0; n < count; ++n) {
     time.push_back(interval * n);
@@ -111,6 +116,50 @@ TEST(TimeFilter, FiltersTheColumnAskedFor) {
   series.columns = {{"kinetic", "J/m"}, {"potential", "J/m"}};
   series.values = {1.0, 5.0, 1.0, 5.0};
   EXPECT_NEAR(gaussian_filter(series, 1.0, 1).value[0], 5.0, 1e-14);
+}
+
+std::vector<Series> sampled_together(std::size_t count) {
+  std::vector<Series> all;
+  for (std::size_t s = 0; s < count; ++s) {
+    const double pitch = 1.0 + 0.1 * static_cast<double>(s);
+    all.push_back(sampled(150, 0.01, [&](double t) { return std::sin(pitch * 20.0 * t); }));
+    // Dry stretches of their own, one longer than the window.
+    for (std::size_t n = s; n < s + 40 && n < all[s].size(); ++n) all[s].values[n] = kDry;
+  }
+  return all;
+}
+
+std::vector<const Series*> pointers_to(const std::vector<Series>& all) {
+  std::vector<const Series*> list;
+  for (const Series& one : all) list.push_back(&one);
+  return list;
+}
+
+TEST(TimeFilter, OfManySampledTogetherIsBitByBitThatOfEach) {
+  const std::vector<Series> all = sampled_together(70);
+  const std::vector<Filtered> together = gaussian_filter(pointers_to(all), 0.03);
+  ASSERT_EQ(together.size(), all.size());
+  const auto bits = [](const std::vector<double>& values) {
+    std::vector<std::uint64_t> list;
+    for (const double value : values) list.push_back(std::bit_cast<std::uint64_t>(value));
+    return list;
+  };
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    const Filtered alone = gaussian_filter(all[s], 0.03);
+    EXPECT_EQ(bits(together[s].value), bits(alone.value)) << s;
+    EXPECT_EQ(bits(together[s].weight), bits(alone.weight)) << s;
+  }
+}
+
+TEST(TimeFilter, RefusesSeriesThatWereNotSampledTogether) {
+  for (const bool shifted : {true, false}) {
+    std::vector<Series> all = sampled_together(3);
+    (shifted ? all[2].time : all[2].duration).back() += 1e-3;
+    EXPECT_THROW((void)gaussian_filter(pointers_to(all), 0.03), std::invalid_argument);
+  }
+  EXPECT_TRUE(gaussian_filter(std::span<const Series* const>(), 0.03).empty());
+  EXPECT_THROW((void)gaussian_filter(std::span<const Series* const>(), -1.0),
+               std::invalid_argument);
 }
 
 TEST(TimeFilter, RefusesATauThatIsNoPositiveNumberAndAColumnThatIsNotThere) {

@@ -72,6 +72,24 @@ TEST(Report, OfAConstantPressureIsThatPressure) {
   EXPECT_NEAR(*report.sensors[0].highest, 700.0, 1e-9);
 }
 
+TEST(Report, FiltersEachSensorBesideOthersAsAlone) {
+  std::vector<Series> all(4, probe());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].name = "probe " + std::to_string(i);
+    all[i].kind = i == 1 ? "surface_height" : "pressure";
+    for (double& value : all[i].values) value *= 1.0 + static_cast<double>(i);
+  }
+  for (double& time : all[2].time) time *= 1.5;  // of another table than its neighbours
+  const Report together = make_report(scene_of_no_experiment(), all, nullptr, 0.7);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Report alone = make_report(scene_of_no_experiment(), {all[i]}, nullptr, 0.7);
+    EXPECT_EQ(together.sensors[i].name, all[i].name);
+    EXPECT_EQ(together.sensors[i].highest, alone.sensors[0].highest) << i;
+    EXPECT_EQ(together.sensors[i].highest_at, alone.sensors[0].highest_at) << i;
+    EXPECT_EQ(together.sensors[i].last, alone.sensors[0].last) << i;
+  }
+}
+
 TEST(Report, SaysThatNoExperimentMatchesAndThatTheRunHasNotEnded) {
   const Report report = make_report(scene_of_no_experiment(), {probe()}, nullptr);
   EXPECT_FALSE(report.evidence);
