@@ -36,14 +36,17 @@ class ThreadTeam {
         &body);
   }
 
-  /// Calls first(task) for each task in [0, tasks), and then second(task) for each, as soon as
-  /// first() is done for it and for those that needs(task) lists: whoever has no first left to
-  /// take need not wait for the last of them. Returns when all are done. Nothing may throw.
+  /// Calls first(task) for each task in [0, tasks), and second(task) for each, once first() is done
+  /// for it and for those that needs(task) lists, all of them earlier tasks: whoever has no first
+  /// left to take need not wait for the last of them, and what a first leaves in the cache is used
+  /// from there where there is one thread. Returns when all are done. Nothing may throw.
   template <class First, class Needs, class Second>
   void run_both(std::size_t tasks, const First& first, const Needs& needs, const Second& second) {
     if (helpers_.empty() || tasks < 2) {
-      for (std::size_t task = 0; task < tasks; ++task) first(task);
-      for (std::size_t task = 0; task < tasks; ++task) second(task);
+      for (std::size_t task = 0; task < tasks; ++task) {
+        first(task);
+        second(task);
+      }
       return;
     }
     reset_firsts(tasks);

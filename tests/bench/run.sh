@@ -5,7 +5,7 @@
 #
 #   tests/bench/run.sh              everything below
 #   tests/bench/run.sh speed        schemes x particles x precisions x threads (speed.py)
-#   tests/bench/run.sh scale        the recommended scheme from 20 000 to 4 million particles
+#   tests/bench/run.sh scale        both schemes from 20 000 to 4 million particles, one thread
 #   tests/bench/run.sh targets      the paper's and the recommended scheme on each SIMD target
 #   tests/bench/run.sh left-out     what a scene saves by leaving a term out (left_out_bench.cpp)
 #   tests/bench/run.sh case         the whole dam break to T = 8, core-seconds and errors
@@ -27,8 +27,8 @@ for part in "${parts[@]}"; do
   case "$part" in
     speed) python3 tests/bench/speed.py "$sluice" schemas/examples ;;
     scale)
-      python3 tests/bench/speed.py "$sluice" schemas/examples --scheme dambreak \
-        --precision mixed --threads 1 --particles 2e4,1e5,5e5,2e6,4e6
+      python3 tests/bench/speed.py "$sluice" schemas/examples --precision mixed --threads 1 \
+        --particles 2e4,1e5,5e5,2e6,4e6
       ;;
     targets)
       for simd in SSE4 AVX2 AVX3; do
