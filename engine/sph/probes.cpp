@@ -102,8 +102,9 @@ Probe FluidProbe::surface_height(double x) const {
   };
   constexpr double kSurface = 0.5;
   sort_down_to(std::numeric_limits<double>::infinity());
-  for (std::size_t n = 0; n < top.size(); ++n) {
-    const double y = top[n].y();
+  std::size_t next = 0;
+  while (next < top.size()) {  // of which filled() makes more
+    const double y = top[next++].y();
     const double at_particle = filled(y);
     if (at_particle < kSurface) continue;
     double low = y;
