@@ -173,11 +173,13 @@ Order sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const dou
   const StripLists strips = particles_of_strips(team, grid, y, id);
   std::vector<std::uint32_t> sorted(strips.particles.size());
   std::vector<std::uint32_t> slots(grid.strips() + 1, 0);  // of each strip, then their first
+  const auto sorted_of = [&](std::size_t strip) {
+    return std::span(sorted.data() + strips.begin[strip], sorted.data() + strips.begin[strip + 1]);
+  };
   for_strips(team, grid, [&](std::size_t strip) {
-    const std::span<std::uint32_t> own(sorted.data() + strips.begin[strip],
-                                       sorted.data() + strips.begin[strip + 1]);
-    sort_strip(grid, x, y, id, strips.of(strip), own);
-    slots[strip + 1] = walk_clusters(grid, x, own, [](std::uint32_t, std::uint32_t) {});
+    sort_strip(grid, x, y, id, strips.of(strip), sorted_of(strip));
+    slots[strip + 1] =
+        walk_clusters(grid, x, sorted_of(strip), [](std::uint32_t, std::uint32_t) {});
   });
   std::partial_sum(slots.begin(), slots.end(), slots.begin());
 
@@ -192,8 +194,7 @@ Order sort_into_clusters(ThreadTeam& team, const Grid& grid, std::span<const dou
   order.source.assign(layout.slot_count, Order::kEmpty);
   for_strips(team, grid, [&](std::size_t strip) {
     std::uint32_t* const source = order.source.data() + slots[strip];
-    walk_clusters(grid, x,
-                  {sorted.data() + strips.begin[strip], sorted.data() + strips.begin[strip + 1]},
+    walk_clusters(grid, x, sorted_of(strip),
                   [&](std::uint32_t slot, std::uint32_t particle) { source[slot] = particle; });
   });
   return order;

@@ -443,9 +443,7 @@ void sum_reinitialisation(const SweepTask<T>& task) {
 /// Rows hold a few clusters that are near, a vector of them or less.
 inline std::size_t search_boxes(const SearchTask& task) {
   const hn::CappedTag<float, kTail> d;
-  const hn::RebindToUnsigned<decltype(d)> d_entry;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  const auto numbers = hn::Iota(d_entry, 0);
   const auto left = hn::Set(d, task.left);
   const auto right = hn::Set(d, task.right);
   const auto low = hn::Set(d, task.low);
@@ -464,15 +462,10 @@ inline std::size_t search_boxes(const SearchTask& task) {
     }
     row.next = j;
     for (; j < row.end; j += lanes) {
-      const auto beside =
-          hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
       const auto level =
           hn::And(hn::LoadU(d, boxes.y_max + j) >= low, hn::LoadU(d, boxes.y_min + j) <= high);
-      const auto near = hn::And(hn::And(beside, level), hn::FirstN(d, row.end - j));
-      const auto chosen = hn::RebindMask(d_entry, near);
-      const auto entries = numbers + hn::Set(d_entry, j + (kSameTile << PairList::kShiftBit));
-      hn::StoreU(hn::Compress(entries, chosen), d_entry, task.out + found);
-      found += hn::CountTrue(d_entry, chosen);
+      const auto near = hn::And(clusters_within(d, boxes, j, row.end, left, right), level);
+      found += list_lanes(d, near, j + (kSameTile << PairList::kShiftBit), task.out + found);
       if (j + lanes < row.end && boxes.x_min_after[j + lanes] > task.right) break;
     }
   }

@@ -376,6 +376,26 @@ inline void sum_energy(const ParticleSpan& p, const Method& method, Energy& out)
   out.internal += mass * c_sq * hn::GetLane(hn::SumOfLanes(d, compressions));
 }
 
+/// Which of the clusters from j on, before `end`, reach into [left, right].
+template <class D, class V>
+HWY_INLINE auto clusters_within(D d, const BoxesView& boxes, std::uint32_t j, std::uint32_t end,
+                                V left, V right) {
+  const auto beside =
+      hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
+  return hn::And(beside, hn::FirstN(d, end - j));
+}
+
+/// Writes first, first + 1, ... for the lanes of the mask, and a vector's worth beyond; returns how
+/// many they are.
+template <class D, class M>
+HWY_INLINE std::size_t list_lanes(D, M mask, std::uint32_t first, std::uint32_t* HWY_RESTRICT out) {
+  const hn::RebindToUnsigned<D> d_number;
+  const auto chosen = hn::RebindMask(d_number, mask);
+  const auto numbers = hn::Iota(d_number, 0) + hn::Set(d_number, first);
+  hn::StoreU(hn::Compress(numbers, chosen), d_number, out);
+  return hn::CountTrue(d_number, chosen);
+}
+
 /// The first cluster of a row that reaches `left`, or its end. Clusters lie about evenly along a
 /// strip, so that it is mostly in the vector that is tried first.
 inline std::uint32_t first_near(const BoxesView& boxes, const Surroundings::Row& row) {
@@ -405,9 +425,7 @@ constexpr std::size_t kListed = 64;
 template <class Body>
 HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body) {
   const hn::CappedTag<float, kTail> d;
-  const hn::RebindToUnsigned<decltype(d)> d_number;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  const auto numbers = hn::Iota(d_number, 0);
   const BoxesView& boxes = around.boxes;
   std::uint32_t listed[kListed + kTail];
   std::size_t count = 0;
@@ -416,11 +434,7 @@ HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body
     const auto right = hn::Set(d, row.right);
     for (std::uint32_t j = first_near(boxes, row); j < row.end; j += lanes) {
       if (boxes.x_min_after[j] > row.right) break;
-      const auto beside =
-          hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
-      const auto near = hn::RebindMask(d_number, hn::And(beside, hn::FirstN(d, row.end - j)));
-      hn::StoreU(hn::Compress(numbers + hn::Set(d_number, j), near), d_number, listed + count);
-      count += hn::CountTrue(d_number, near);
+      count += list_lanes(d, clusters_within(d, boxes, j, row.end, left, right), j, listed + count);
       if (count >= kListed) {
         body(std::span<const std::uint32_t>(listed, count));
         count = 0;

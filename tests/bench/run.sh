@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Speed and memory, printed as tables with the machine's name. Takes about ten minutes; nothing else
+# Speed and memory, printed as tables with the machine's name. Takes about half an hour; nothing else
 # should run meanwhile. Figures of different machines or days are not to be compared; ratios of one
 # table are.
 #

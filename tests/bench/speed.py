@@ -7,9 +7,9 @@ For each scene (the paper's and the recommended scheme), each number of particle
 number of threads: million fluid-particle steps per second, the median of R runs taken in turns
 (machines are noisy: compare lines of one table only), bytes per particle, and the share of each
 pass. All of a run is included but the checkpoint at its end, which takes a run of seconds as long
-as one of hours. A run starts as the scene does and is stopped after about S seconds of a core's work: the same
-step for any number of threads, for the flow decides how often lists are made. (In the first part of
-a dam break, that is; whole cases: run.sh case.)
+as one of hours. A run starts as the scene does and is stopped after about S seconds of a core's
+work: the same step for any number of threads, for the flow decides how often lists are made. (In
+the first part of a dam break, that is; whole cases: run.sh case.)
 Threads 1+1 are two runs side by side, their speeds added: what the machine's cores can do together,
 and so the most that two threads of one run could reach.
 """
@@ -133,7 +133,8 @@ def main():
             outcomes.append(speed_together(options.program, scene, threads, options))
 
     print(f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; median of "
-          f"{options.repeat}; million fluid-particle steps per second, all but the last checkpoint included")
+          f"{options.repeat}; million fluid-particle steps per second, all but the last checkpoint "
+          "included")
     print(f"{'scene':<22}{'particles':>10} {'sums':<7}{'threads':>7} {'target':<6}{'M/s':>7}"
           f"{'B/particle':>11}" + "".join(f"{name[:9]:>10}" for name in PASSES))
     for name, precision, threads, _, outcomes in cases:
