@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/checks.hpp"
 #include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
 #include "engine/ladder/markup.hpp"
@@ -112,13 +113,13 @@ void add_export(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("export", "Make a job's frames readable for other programs");
   verb->add_option("folder", arguments->folder, "The job's folder")
       ->required()
-      ->check(CLI::ExistingDirectory);
+      ->check(existing_folder());
   const std::map<std::string, ExportFormat> formats{{"xdmf", ExportFormat::xdmf},
                                                     {"csv", ExportFormat::csv}};
   verb->add_option("--format", arguments->format,
                    "xdmf: one file for ParaView beside the frames; csv: a table per frame")
       ->required()
-      ->transform(CLI::CheckedTransformer(formats).description("{xdmf,csv}"));
+      ->transform(one_of(formats));
   verb->add_option("--output", arguments->output, "Where to; by default the job's frames folder");
   verb->footer("Example: sluice export dambreak-quick --format xdmf");
   verb->callback([arguments] { export_frames(*arguments); });

@@ -1,17 +1,25 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "cli/checks.hpp"
+#include "cli/job_names.hpp"
 #include "cli/job_text.hpp"
 #include "cli/json_text.hpp"
 #include "cli/service_client.hpp"
 #include "cli/service_study.hpp"
 #include "cli/verbs.hpp"
+#include "engine/store/checkpoint_io.hpp"
 #include "service/job_ids.hpp"
 
 namespace sluice {
@@ -24,9 +32,21 @@ struct ActionArguments {
   std::vector<std::string> ids;
   std::optional<double> end_time;
   bool json = false;
+  bool wait = false;
+  bool yes = false;
 };
 
-using MakeRequest = HttpRequest (*)(const std::string& id, const ActionArguments& arguments);
+/// What a verb asks for, and how it may wait for that.
+struct Action {
+  HttpRequest (*make_request)(const std::string& id, const ActionArguments& arguments) = nullptr;
+  /// Returns the job's answer once it is so. `known` is the newest checkpoint's step before.
+  HttpReply (*wait)(ServiceClient& service, const std::string& id, std::uint64_t known) = nullptr;
+  const char* wait_help = "";
+  bool asks = false;  ///< for a yes, on a terminal
+  bool takes_end_time = false;
+};
+
+constexpr std::chrono::milliseconds kLookAgain{300};
 
 /// The path of a job or a study.
 std::string target_of(const std::string& id, std::string_view rest = "") {
@@ -67,6 +87,50 @@ HttpRequest remove(const std::string& id, const ActionArguments&) {
   return request;
 }
 
+/// The step of the job's newest checkpoint; 0 without one.
+std::uint64_t newest_checkpoint(ServiceClient& service, const std::string& id) {
+  std::uint64_t newest = 0;
+  const Json list = service.object_of(service.get(job_target(id, "/files")));
+  for (const Json& file : member(list, "files")) {
+    newest = std::max(newest, step_of_checkpoint_name(text_at(file, "name")).value_or(0));
+  }
+  return newest;
+}
+
+template <class Reached>
+HttpReply until(ServiceClient& service, const std::string& id, const Reached& reached) {
+  while (true) {
+    HttpReply reply = service.get(job_target(id));
+    if (reached(service.object_of(reply))) return reply;
+    std::this_thread::sleep_for(kLookAgain);
+  }
+}
+
+HttpReply until_rest(ServiceClient& service, const std::string& id, std::uint64_t) {
+  return until(service, id, [](const Json& job) { return is_at_rest(job); });
+}
+
+HttpReply until_checkpoint(ServiceClient& service, const std::string& id, std::uint64_t known) {
+  return until(service, id, [&](const Json& job) {
+    return text_at(job, "state") != "running" || newest_checkpoint(service, id) > known;
+  });
+}
+
+/// Asks on a terminal; without one, the command itself is the answer.
+bool is_confirmed(ServiceClient& service, const std::string& id) {
+  if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1) return true;
+  const Json shown = service.object_of(service.get(target_of(id)));
+  std::fputs(fmt::format("delete {} ({}, {}) with all its files? [y/N] ", id,
+                         text_at(shown, "name"), text_at(shown, "state"))
+                 .c_str(),
+             stderr);
+  std::string answer;
+  std::getline(std::cin, answer);
+  const bool yes = answer == "y" || answer == "yes";
+  if (!yes) std::fputs(fmt::format("{} stays\n", id).c_str(), stderr);
+  return yes;
+}
+
 void print_done(const ServiceClient& service, const HttpReply& reply, const std::string& id,
                 const ActionArguments& arguments) {
   if (reply.status == 204) {
@@ -79,12 +143,17 @@ void print_done(const ServiceClient& service, const HttpReply& reply, const std:
 }
 
 /// Every job is tried; the last failure tells how the verb ends.
-void act(const ActionArguments& arguments, MakeRequest make_request) {
+void act(const ActionArguments& arguments, const Action& action) {
   ServiceClient service(arguments.service);
   std::optional<CommandEnd> failure;
-  for (const std::string& id : arguments.ids) {
+  for (const std::string& word : arguments.ids) {
     try {
-      print_done(service, service.ask(make_request(id, arguments)), id, arguments);
+      const std::string id = job_or_study_named(service, word);
+      if (action.asks && !arguments.yes && !is_confirmed(service, id)) continue;
+      const std::uint64_t known = arguments.wait ? newest_checkpoint(service, id) : 0;
+      HttpReply reply = service.ask(action.make_request(id, arguments));
+      if (arguments.wait) reply = action.wait(service, id, known);
+      print_done(service, reply, id, arguments);
     } catch (const CommandEnd& end) {
       if (failure) std::fputs(fmt::format("sluice: {}\n", failure->what()).c_str(), stderr);
       failure = end;
@@ -93,44 +162,63 @@ void act(const ActionArguments& arguments, MakeRequest make_request) {
   if (failure) throw *failure;
 }
 
-std::shared_ptr<ActionArguments> add_action(CLI::App& app, const char* name, const char* help,
-                                            MakeRequest make_request) {
+void add_action(CLI::App& app, const char* name, const char* help, const Action& action) {
   auto arguments = std::make_shared<ActionArguments>();
   CLI::App* verb = app.add_subcommand(name, help);
-  verb->add_option("id", arguments->ids,
-                   "The id of a job, or several; a study's too for cancel and delete")
+  verb->add_option(
+          "id", arguments->ids,
+          "A job's id, the beginning of one, or last; or several. A study's too for cancel "
+          "and delete")
       ->required();
+  if (action.wait != nullptr) {
+    verb->add_flag("--wait", arguments->wait, action.wait_help);
+  }
+  if (action.asks) {
+    verb->add_flag("--yes", arguments->yes, "Do not ask; without a terminal it never does");
+  }
+  if (action.takes_end_time) {
+    verb->add_option("--end-time", arguments->end_time, "A later end of the model time, s")
+        ->check(any_number());
+  }
   verb->add_flag("--json", arguments->json, "Print the service's JSON, a line for each job");
   add_service_options(*verb, arguments->service);
   verb->footer(fmt::format("Example: sluice {} j0r2mt1q8kq0f7a3c1d2e", name));
-  verb->callback([arguments, make_request] { act(*arguments, make_request); });
-  return arguments;
+  verb->callback([arguments, action] { act(*arguments, action); });
 }
 
 }  // namespace
 
 void add_cancel(CLI::App& app) {
-  add_action(app, "cancel", "End a service's job for good; its files stay", &cancel);
+  add_action(app, "cancel", "End a service's job; its files stay, and resume goes on with it",
+             {&cancel});
 }
 
 void add_pause(CLI::App& app) {
-  add_action(app, "pause", "Stop a service's job with a checkpoint until it is resumed", &pause);
+  Action action{&pause};
+  action.wait = &until_rest;
+  action.wait_help = "Return once it rests with its checkpoint, or has ended";
+  add_action(app, "pause", "Stop a service's job with a checkpoint until it is resumed", action);
 }
 
 void add_resume(CLI::App& app) {
-  auto arguments = add_action(
-      app, "resume", "Let a paused job of a service go on, or an ended one for longer", &resume);
-  app.get_subcommand("resume")->add_option("--end-time", arguments->end_time,
-                                           "A later end of the model time, s");
+  Action action{&resume};
+  action.takes_end_time = true;
+  add_action(app, "resume",
+             "Let a paused or cancelled job of a service go on, or an ended one for longer",
+             action);
 }
 
 void add_checkpoint(CLI::App& app) {
-  add_action(app, "checkpoint", "Have a running job of a service write a checkpoint now",
-             &checkpoint);
+  Action action{&checkpoint};
+  action.wait = &until_checkpoint;
+  action.wait_help = "Return once a new checkpoint is written, or the job runs no longer";
+  add_action(app, "checkpoint", "Have a running job of a service write a checkpoint now", action);
 }
 
 void add_delete(CLI::App& app) {
-  add_action(app, "delete", "Delete an ended job of a service with all its files", &remove);
+  Action action{&remove};
+  action.asks = true;
+  add_action(app, "delete", "Delete an ended job of a service with all its files", action);
 }
 
 }  // namespace sluice

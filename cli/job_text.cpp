@@ -27,10 +27,11 @@ std::string percent_text(const Json& job) {
   return progress ? fmt::format("{:.1f} %", 100.0 * progress->fraction()) : "-";
 }
 
-/// Why it is where it is, whatever that is.
+/// Why it is where it is, whatever that is, in a table: without what to do about it.
 std::string why_text(const Json& job) {
   const std::string reason = text_at(job, "reason");
-  return reason.empty() ? text_at(job, "waiting") : reason;
+  const std::string why = reason.empty() ? text_at(job, "waiting") : reason;
+  return why.substr(0, why.find("; "));
 }
 
 double number_or(const Json& object, std::string_view key, double otherwise) {
@@ -94,8 +95,9 @@ std::string rest_text(const Json& job) {
   const std::string state = text_at(job, "state");
   if (state == "completed" && outcome.is_object()) return outcome_text(outcome);
   const std::string advice = text_at(member(outcome, "diagnosis"), "suggestion");
-  if (state != "failed" || advice.empty()) return state_text(job);
-  return fmt::format("{}; {}", state_text(job), advice);
+  const std::string text = state_text(job);
+  const bool told = advice.empty() || text.find(advice) != std::string::npos;
+  return state != "failed" || told ? text : fmt::format("{}; {}", text, advice);
 }
 
 std::string estimate_text(const Json& estimate) {
@@ -118,6 +120,7 @@ std::string job_text(const Json& job) {
   line("label", text_at(job, "label"));
   line("waiting", text_at(job, "waiting"));
   if (!is_at_rest(job)) add_progress(job, line);
+  if (member(job, "pid").is_number()) line("process", count_at(job, "pid"));
   line("end time", fmt::format("{:.6g} s of model time", number_or(job, "end_time", 0.0)));
   line("scheduling", fmt::format("priority {}, threads {}, attempts {}, lost since progress {}",
                                  count_at(job, "priority"), count_at(job, "threads"),

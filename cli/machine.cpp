@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "cli/checks.hpp"
 #include "engine/scene/estimate.hpp"
 
 namespace sluice {
@@ -15,9 +16,9 @@ int default_threads(const Scene& scene) {
 
 void add_execution_options(CLI::App& verb, int& threads, std::string& simd) {
   verb.add_option("--threads", threads, "Threads; by default as many as there are cores and use")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_between(1, 1024));
   verb.add_option("--simd", simd, "SIMD target instead of this machine's best")
-      ->check(CLI::IsMember({"SSE4", "AVX2", "AVX3"}));
+      ->check(one_of(std::vector<std::string>{"SSE4", "AVX2", "AVX3"}));
 }
 
 }  // namespace sluice

@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/usage_text.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/build_id.hpp"
 #include "engine/run/run_loop.hpp"
@@ -21,10 +23,11 @@ namespace sluice {
 namespace {
 
 // Verbs in the order of the help.
-constexpr std::array kVerbs{&add_run,    &add_validate, &add_plan,   &add_inspect,   &add_sensors,
-                            &add_export, &add_report,   &add_study,  &add_stability, &add_serve,
-                            &add_submit, &add_list,     &add_show,   &add_watch,     &add_pause,
-                            &add_resume, &add_cancel,   &add_delete, &add_checkpoint};
+constexpr std::array kVerbs{&add_run,    &add_validate, &add_plan,   &add_inspect,    &add_sensors,
+                            &add_export, &add_report,   &add_study,  &add_stability,  &add_serve,
+                            &add_submit, &add_list,     &add_show,   &add_watch,      &add_pause,
+                            &add_resume, &add_cancel,   &add_delete, &add_checkpoint, &add_help,
+                            &add_version};
 
 int fail(int code, std::string_view message) {
   if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);
@@ -33,22 +36,10 @@ int fail(int code, std::string_view message) {
 
 int fail(ExitCode code, std::string_view message) { return fail(static_cast<int>(code), message); }
 
-/// The message for a first word that is no verb; empty when there is nothing to object to.
-std::string unknown_verb(const CLI::App& app, std::string_view word) {
-  if (word.empty() || word.front() == '-') return {};
-  std::vector<std::string> names;
-  for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  for (const std::string_view name : views) {
-    if (name == word) return {};
-  }
-  return fmt::format("there is no verb {}: {}", word, hint(word, views));
-}
-
-/// A reader that has seen enough, such as `head`, is no failure.
+/// A reader that has seen enough, such as `head`, or a terminal that was closed, is no failure.
 bool reader_went_away() {
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
-  return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
+  return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
 }
 
 /// What was printed must have gone where it was sent, or a cut off file passes for a whole one.
@@ -71,8 +62,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    return fail(ExitCode::usage,
-                fmt::format("{}; see sluice --help or sluice VERB --help", error.what()));
+    return fail(ExitCode::usage, usage_text(app, error));
   } catch (const CommandEnd& end) {
     return fail(end.code(), end.what());
   } catch (const SceneError& error) {
@@ -87,10 +77,21 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   }
 }
 
+/// A file that is opened first must not get the number of a closed standard stream: what is printed
+/// would go into it.
+void open_standard_descriptors() {
+  int descriptor = STDIN_FILENO;
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO) {
+    descriptor = ::open("/dev/null", O_RDWR);
+  }
+  if (descriptor > STDERR_FILENO) ::close(descriptor);
+}
+
 }  // namespace
 }  // namespace sluice
 
 int main(int argc, char** argv) {
+  sluice::open_standard_descriptors();
   CLI::App app{
       "Sluice runs long dam-break simulations as jobs that can be stopped and resumed anywhere.\n"
       "Exit codes: 0 done, 2 usage, 3 invalid scene, 4 numerical failure, 5 storage failure,\n"

@@ -86,10 +86,13 @@ void end_with_problem(const HttpReply& reply, const ProblemContext& context) {
                                  context.server, reply.status));
   }
   const Json& errors = member(problem, "errors");
+  const std::string message = message_of(problem, context);
   for (const Json& error : errors.is_array() ? errors : Json::array()) {
+    const std::string detail = text_at(error, "detail");
+    if (!detail.empty() && message.find(detail) != std::string::npos) continue;  // told there
     std::fputs((error_line(error, context.subject, slug_of(problem)) + "\n").c_str(), stderr);
   }
-  throw end_for(reply.status, problem, message_of(problem, context));
+  throw end_for(reply.status, problem, message);
 }
 
 }  // namespace sluice

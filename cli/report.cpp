@@ -8,7 +8,9 @@
 #include <memory>
 #include <string>
 
+#include "cli/checks.hpp"
 #include "cli/fetched_job.hpp"
+#include "cli/job_names.hpp"
 #include "cli/service_client.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/publish.hpp"
@@ -69,16 +71,18 @@ void report_folder(const ReportArguments& arguments, const std::filesystem::path
   std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
 
-void report(const ReportArguments& arguments) {
+void report(ReportArguments arguments) {
   if (!(arguments.tau > 0.0) || !std::isfinite(arguments.tau)) {
     throw CommandEnd(ExitCode::usage,
                      fmt::format("--tau is {}, but must be a positive number of seconds, such as "
                                  "{}",
                                  arguments.tau, kComparisonTau));
   }
-  if (!arguments.of_service) return report_folder(arguments, arguments.target);
+  if (!is_of_service(arguments.service, arguments.of_service, arguments.target)) {
+    return report_folder(arguments, arguments.target);
+  }
   ServiceClient service(arguments.service);
-  const FetchedJob job(service, arguments.target);
+  const FetchedJob job(service, job_named(service, arguments.target));
   report_folder(arguments, job.folder());
 }
 
@@ -89,7 +93,7 @@ void add_report(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("report", "Say what a run came to, and compare it with an experiment.");
   verb->add_option("target", arguments->target,
-                   "Job folder, of a run that goes on or has ended; with --server, the job's id")
+                   "Job folder, of a run that goes on or has ended, or the job's id at a service")
       ->required();
   const std::map<std::string, ReportFormat> formats{{"text", ReportFormat::text},
                                                     {"json", ReportFormat::json},
@@ -100,10 +104,11 @@ void add_report(CLI::App& app) {
       verb->add_option("--format", arguments->format,
                        "text, json, markdown, html: one page with plots and pictures, or svg: the "
                        "plots over the reference")
-          ->transform(
-              CLI::CheckedTransformer(formats).description("{text,json,markdown,html,svg}"));
+          ->transform(one_of(formats));
   verb->add_flag("--json", arguments->json, "The same as --format json")->excludes(format);
-  verb->add_option("--tau", arguments->tau, "Time filter of pressures, s")->capture_default_str();
+  verb->add_option("--tau", arguments->tau, "Time filter of pressures, s")
+      ->check(number_above_zero())
+      ->capture_default_str();
   verb->add_option(
       "--output", arguments->output,
       "Also write report.txt, report.json, report.md and report.html into this folder");

@@ -2,20 +2,21 @@
 #include <unistd.h>
 
 #include <cctype>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "cli/adopt_scene.hpp"
+#include "cli/checks.hpp"
 #include "cli/machine.hpp"
+#include "cli/run_end.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/reporter.hpp"
 #include "engine/run/run_loop.hpp"
+#include "engine/run/signals.hpp"
 #include "engine/store/job_folder.hpp"
-#include "engine/study/report.hpp"
 
 namespace sluice {
 namespace {
@@ -47,19 +48,19 @@ std::string folder_name(const std::string& scene_name) {
   return name.empty() ? "job" : name;
 }
 
-struct Job {
+struct OpenedJob {
   JobFolder folder;
   Scene scene;
 };
 
-Job open_job(const fs::path& root) {
+OpenedJob open_job(const fs::path& root) {
   JobFolder folder = JobFolder::open(root);
   Scene scene =
       parse_scene_or_end(folder.scene_text(), folder.paths().scene(), StabilityCheck::skip);
   return {std::move(folder), std::move(scene)};
 }
 
-Job make_job(const fs::path& scene_path, const std::string& wanted_folder) {
+OpenedJob make_job(const fs::path& scene_path, const std::string& wanted_folder) {
   SceneFile file = read_scene(scene_path);
   const fs::path root = wanted_folder.empty() ? folder_name(file.scene.name) : wanted_folder;
   if (!JobFolder::holds_job(root)) {
@@ -70,7 +71,7 @@ Job make_job(const fs::path& scene_path, const std::string& wanted_folder) {
   return {std::move(folder), std::move(file.scene)};
 }
 
-Job find_job(const RunArguments& arguments) {
+OpenedJob find_job(const RunArguments& arguments) {
   if (!fs::is_directory(arguments.target)) return make_job(arguments.target, arguments.folder);
   if (!arguments.folder.empty()) {
     throw CommandEnd(ExitCode::usage, "--folder goes with a scene, not with a folder");
@@ -103,24 +104,6 @@ std::unique_ptr<Reporter> make_reporter(ProgressForm form) {
   return std::make_unique<SilentReporter>();
 }
 
-std::string next_commands(const Job& job, const Outcome& outcome) {
-  const std::string root = job.folder.paths().root().string();
-  std::string text;
-  if (outcome.exit_code != ExitCode::done) {
-    text += fmt::format("  to go on:   sluice run {}\n", root);
-  }
-  const auto checkpoints = job.folder.paths().checkpoints();
-  if (!checkpoints.empty()) {
-    text += fmt::format("  to look in: sluice inspect {}\n", checkpoints.front().string());
-  }
-  for (const Sensor& sensor : job.scene.sensors) {
-    if (sensor.kind != SensorKind::pressure) continue;
-    return text + fmt::format("  to plot:    sluice sensors {} {} --filter gaussian --tau 0.002\n",
-                              root, sensor.name);
-  }
-  return text;
-}
-
 /// A report of an earlier, shorter run says nothing about this one.
 void remove_report(const JobPaths& paths) {
   std::error_code ignored;
@@ -129,33 +112,22 @@ void remove_report(const JobPaths& paths) {
   }
 }
 
-/// Leaves the report beside the results, for those who only read files. What goes wrong here makes
-/// no run a failure: `sluice report` can make it again.
-void leave_report(const JobPaths& paths, const Outcome& outcome) {
-  if (outcome.exit_code != ExitCode::done) return;
-  // The run is safe: being asked to stop now is no reason to end as if it were not.
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) std::signal(number, SIG_IGN);
-  try {
-    publish_report(paths.root(), paths.root());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sluice: no report: {}; sluice report {} makes it\n", error.what(),
-               paths.root().string());
-  }
-}
-
 void run(const RunArguments& arguments) {
-  Job job = find_job(arguments);
+  // Until the process ends: a wish that comes twice must not end it before it has said how it went.
+  static const SignalRequests signals;
+  OpenedJob job = find_job(arguments);
+  job.folder.enter();
+  const std::string earlier = completed_outcome(job.folder, job.scene);
   remove_report(job.folder.paths());
   const ProgressForm form = chosen_form(arguments.progress);
   const auto reporter = make_reporter(form);
   const Outcome outcome =
       run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
-  leave_report(job.folder.paths(), outcome);
+  const std::string closing = closing_text(job.folder, outcome, earlier);
+  leave_report(job.folder, outcome);
   // Stdout belongs to the JSON lines where they are written.
   std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
-  // A reader who went away is no error of a run that is safe on disk.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::fputs((summary_text(outcome) + next_commands(job, outcome)).c_str(), out);
+  std::fputs((closing + next_commands(job.folder, job.scene, outcome)).c_str(), out);
   if (outcome.exit_code == ExitCode::done) return;
   const bool stopped = outcome.exit_code == ExitCode::checkpointed;
   throw CommandEnd(outcome.exit_code, stopped ? "" : outcome.reason);
@@ -165,10 +137,11 @@ void add_test_options(CLI::App& verb, RunArguments& arguments) {
   const std::string group = "For tests and scripts";
   verb.add_option("--stop-after-step", arguments.stop_after_step,
                   "Stop with a checkpoint, exit 85, once this step is done")
+      ->check(whole_from(0))
       ->group(group);
   auto* every = verb.add_option("--checkpoint-every", arguments.checkpoint_every,
                                 "A checkpoint every N steps instead of by its cost")
-                    ->check(CLI::PositiveNumber)
+                    ->check(whole_from(1))
                     ->group(group);
   verb.add_flag("--no-checkpoint", arguments.no_checkpoint,
                 "No checkpoint before the end or a stop")
@@ -176,7 +149,7 @@ void add_test_options(CLI::App& verb, RunArguments& arguments) {
       ->group(group);
   verb.add_option("--storage-patience", arguments.storage_patience,
                   "Seconds to go on trying when the disk is full or refuses")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_between(0.0, 1e6))
       ->capture_default_str()
       ->group(group);
 }
@@ -188,7 +161,7 @@ void add_run(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("run", "Run a scene, or go on with the job in a folder");
   verb->add_option("target", arguments->target, "A scene (JSON) or a job's folder")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(existing_or_stdin());
   verb->add_option("--folder", arguments->folder,
                    "The job's folder for a scene; by default the scene's name in this folder");
   add_execution_options(*verb, arguments->threads, arguments->simd);
@@ -198,7 +171,7 @@ void add_run(CLI::App& app) {
                                                   {"none", ProgressForm::none}};
   verb->add_option("--progress", arguments->progress,
                    "auto: a bar on a terminal, else one JSON line a second")
-      ->transform(CLI::CheckedTransformer(forms).description("{auto,bar,json,none}"));
+      ->transform(one_of(forms));
   add_test_options(*verb, *arguments);
   verb->footer(
       "SIGUSR1 asks for a checkpoint; SIGTERM or Ctrl-C stops with one (exit 85), a second one at "

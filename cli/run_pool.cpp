@@ -8,9 +8,11 @@
 
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
 #include <string>
 
+#include "engine/run/stop_wish.hpp"
 #include "engine/store/file_system.hpp"
 
 namespace sluice {
@@ -19,6 +21,8 @@ namespace {
 /// In the child, which has no other thread: nothing here allocates.
 [[noreturn]] void become_run(char* const* arguments, int output, pid_t parent,
                              const sigset_t& mask) {
+  // A group of its own: what a terminal sends to the study's is the study's to pass on.
+  ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(128 + SIGTERM);
   ::dup2(output, STDOUT_FILENO);
@@ -32,7 +36,8 @@ namespace {
 
 RunPool::RunPool() {
   ::sigemptyset(&watched_);
-  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&watched_, number);
+  for (const int number : stop_signals()) ::sigaddset(&watched_, number);
+  for (const int number : {SIGTSTP, SIGCHLD}) ::sigaddset(&watched_, number);
   ::sigprocmask(SIG_BLOCK, &watched_, &before_);
 }
 
@@ -40,6 +45,10 @@ RunPool::~RunPool() {
   stop_all();
   while (!runs_.empty()) {
     if (!reap()) ::sigwaitinfo(&watched_, nullptr);
+  }
+  // A wish that came again meanwhile is fulfilled.
+  const timespec no_time{};
+  while (::sigtimedwait(&watched_, nullptr, &no_time) > 0) {
   }
   ::sigprocmask(SIG_SETMASK, &before_, nullptr);
 }
@@ -81,12 +90,30 @@ std::optional<RunPool::Ended> RunPool::wait() {
   while (true) {
     if (const auto ended = reap()) return ended;
     const int signal = ::sigwaitinfo(&watched_, nullptr);
-    if (signal != SIGCHLD && signal > 0) return std::nullopt;
+    if (signal == SIGTSTP) {
+      rest();
+    } else if (signal != SIGCHLD && signal > 0) {
+      return std::nullopt;
+    }
   }
 }
 
-void RunPool::stop_all() const {
-  for (const auto& [child, number] : runs_) ::kill(child, SIGTERM);
+void RunPool::stop_all() const { send(SIGTERM); }
+
+void RunPool::send(int signal) const {
+  for (const auto& [child, number] : runs_) ::kill(child, signal);
+}
+
+void RunPool::rest() const {
+  send(SIGSTOP);
+  // By its own signal: the system knows when nobody could wake this process again.
+  sigset_t suspend;
+  ::sigemptyset(&suspend);
+  ::sigaddset(&suspend, SIGTSTP);
+  ::raise(SIGTSTP);
+  ::sigprocmask(SIG_UNBLOCK, &suspend, nullptr);
+  ::sigprocmask(SIG_BLOCK, &suspend, nullptr);
+  send(SIGCONT);
 }
 
 }  // namespace sluice

@@ -10,9 +10,10 @@
 
 namespace sluice {
 
-/// Child processes that each run a job: `sluice run FOLDER`, this very program. While it lives,
-/// SIGTERM, SIGINT, SIGHUP and SIGCHLD are blocked and only seen by wait(). When the process dies,
-/// however it does, its runs write a checkpoint and stop.
+/// Child processes that each run a job, `sluice run FOLDER`, this very program, in a process group
+/// of its own. While it lives, SIGTERM, SIGINT, SIGHUP (where not ignored at the start), SIGTSTP
+/// and SIGCHLD are blocked and only seen by wait(). When the process dies, however it does, its
+/// runs write a checkpoint and stop; when a terminal suspends it, they rest with it.
 class RunPool {
  public:
   RunPool();
@@ -32,11 +33,15 @@ class RunPool {
   };
   /// Waits for a run to end, or for a stop to be asked: then it holds no value.
   [[nodiscard]] std::optional<Ended> wait();
-  /// Passes a stop on: the runs write a checkpoint and end; a second time they end at once.
+  /// Passes a stop on: the runs write a checkpoint and end; asked again later than kSameWish
+  /// (engine/run/stop_wish.hpp), they end at once.
   void stop_all() const;
 
  private:
   std::optional<Ended> reap();
+  void send(int signal) const;
+  /// Suspends the runs and this process until it is continued.
+  void rest() const;
 
   std::map<pid_t, std::size_t> runs_;
   sigset_t watched_{};

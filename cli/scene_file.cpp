@@ -17,7 +17,9 @@ std::string read_scene_text(const std::filesystem::path& path) {
     // One byte more than a scene may have, so that the parser finds it too long and says so.
     return read_text(path, kMaxSceneBytes + 1);
   } catch (const StorageError& error) {
-    throw CommandEnd(ExitCode::invalid_scene, error.what());
+    // Too long is a fault of the scene; all else of the word that names it.
+    const bool too_long = error.fault() == StorageFault::not_ours;
+    throw CommandEnd(too_long ? ExitCode::invalid_scene : ExitCode::usage, error.what());
   }
 }
 
@@ -53,8 +55,8 @@ Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& whe
 
 SceneFile read_scene(const std::filesystem::path& path) {
   SceneFile file;
-  file.text = read_scene_text(path);
-  file.scene = parse_scene_or_end(file.text, path, StabilityCheck::refuse);
+  file.text = read_scene_bytes(path);
+  file.scene = parse_scene_or_end(file.text, path == "-" ? "stdin" : path, StabilityCheck::refuse);
   return file;
 }
 

@@ -15,12 +15,12 @@ struct SceneFile {
   Scene scene;
 };
 
-/// A scene's text as it is, "-" from stdin. Throws CommandEnd(invalid_scene) when it cannot be read
-/// or is longer than a scene may be.
+/// A scene's text as it is, "-" from stdin. Throws CommandEnd: usage when it cannot be read,
+/// invalid_scene when it is longer than a scene may be.
 [[nodiscard]] std::string read_scene_bytes(const std::filesystem::path& path);
 
-/// Reads and checks a scene. Prints every problem to stderr, one line each with its JSON pointer,
-/// and throws CommandEnd(invalid_scene) when there are any.
+/// Reads and checks a scene, "-" from stdin. Prints every problem to stderr, one line each with its
+/// JSON pointer, and throws CommandEnd(invalid_scene) when there are any.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& path);
 
 /// The same for a text that stands in `where`. What stands in a job's folder was checked when the

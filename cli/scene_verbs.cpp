@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/checks.hpp"
 #include "cli/machine.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
@@ -130,7 +131,7 @@ void show_plan(const SceneArguments& arguments) {
 
 /// All problems as JSON on stdout: for editors and scripts.
 void validate_as_json(const std::string& path) {
-  ParseResult result = parse_scene(read_text(path, kMaxSceneBytes + 1));
+  ParseResult result = parse_scene(read_scene_bytes(path));
   if (result.scene && estimate(*result.scene).fluid_particles <= kTrialParticles) {
     if (auto problem = problem_when_filled(*result.scene)) {
       result.problems.push_back(*std::move(problem));
@@ -157,9 +158,9 @@ void validate(const SceneArguments& arguments) {
 
 std::shared_ptr<SceneArguments> add_scene_options(CLI::App& verb) {
   auto arguments = std::make_shared<SceneArguments>();
-  verb.add_option("scene", arguments->scene, "A scene (JSON)")
+  verb.add_option("scene", arguments->scene, "A scene (JSON), or - for stdin")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(file_or_stdin());
   verb.add_flag("--json", arguments->json, "Print JSON");
   return arguments;
 }

@@ -1,15 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 
+#include "cli/checks.hpp"
 #include "cli/job_data.hpp"
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/dimensionless.hpp"
 #include "engine/store/filter.hpp"
+#include "service/series_view.hpp"
 
 namespace sluice {
 namespace {
@@ -19,6 +24,7 @@ using Json = nlohmann::ordered_json;
 /// A series as it is shown: filtered, scaled.
 struct View {
   Series series;
+  std::size_t samples = 0;                  ///< in the time asked for
   std::optional<double> provisional_after;  ///< in the view's unit of time
 };
 
@@ -35,16 +41,52 @@ Series filtered(const Series& series, double tau) {
   return result;
 }
 
+/// The samples of a time, both ends included.
+Series samples_within(const Series& series, double from, double to) {
+  const auto first = std::lower_bound(series.time.begin(), series.time.end(), from);
+  const auto last = std::upper_bound(first, series.time.end(), to);
+  const auto begin = first - series.time.begin();
+  const auto end = last - series.time.begin();
+  const auto part = [&](const std::vector<double>& all, std::ptrdiff_t width) {
+    return std::vector<double>(all.begin() + begin * width, all.begin() + end * width);
+  };
+  Series result = series;
+  result.time = part(series.time, 1);
+  result.duration = part(series.duration, 1);
+  result.weight = part(series.weight, 1);
+  result.values = part(series.values, static_cast<std::ptrdiff_t>(series.columns.size()));
+  return result;
+}
+
+Divisors divisors_or_end(const JobData& job, const Series& series) {
+  try {
+    return dimensionless_divisors(job.scene(), series);
+  } catch (const std::invalid_argument& error) {
+    throw CommandEnd(ExitCode::usage, fmt::format("--dimensionless: {}", error.what()));
+  }
+}
+
+/// To the time and the number of samples that were asked for.
+void cut(View& view, const SensorArguments& arguments) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  view.series = samples_within(view.series, arguments.from.value_or(-infinity),
+                               arguments.to.value_or(infinity));
+  view.samples = view.series.size();
+  if (!arguments.max_points) return;
+  view.series = decimate(view.series, static_cast<std::size_t>(*arguments.max_points));
+}
+
 View make_view(const JobData& job, const Series& raw, const SensorArguments& arguments) {
-  View view{raw, {}};
+  View view{raw, raw.size(), {}};
   if (arguments.filter == FilterKind::gaussian) {
     view.series = filtered(raw, *arguments.tau);
     if (!job.completed() && raw.size() > 0) {
       view.provisional_after = provisional_after(raw, *arguments.tau);
     }
   }
+  cut(view, arguments);
   if (arguments.dimensionless) {
-    const Divisors divisors = dimensionless_divisors(job.scene(), raw);
+    const Divisors divisors = divisors_or_end(job, raw);
     view.series = dimensionless(std::move(view.series), divisors);
     if (view.provisional_after) *view.provisional_after /= divisors.time;
   }
@@ -89,6 +131,8 @@ Json json_of(const View& view, const SensorArguments& arguments) {
   object["dimensionless"] = arguments.dimensionless;
   object["provisional_after"] =
       view.provisional_after ? Json(*view.provisional_after) : Json(nullptr);
+  object["samples"] = view.samples;
+  object["decimated"] = view.samples != series.size();
   object["time_unit"] = arguments.dimensionless ? "1" : "s";
   object["time"] = series.time;
   Json columns = Json::array();
@@ -142,20 +186,20 @@ void require_folder(const SensorArguments& arguments) {
                      fmt::format("there is no folder {}; for a job of a service, add --server URL",
                                  arguments.target));
   }
-  if (arguments.from || arguments.to || arguments.max_points) {
-    throw CommandEnd(ExitCode::usage, "--from, --to and --max-points go with --server");
-  }
 }
 
-void show_sensors(const SensorArguments& arguments) {
+void show_sensors(SensorArguments arguments) {
   require_sense(arguments);
-  if (arguments.of_service) return show_service_sensors(arguments);
+  if (is_of_service(arguments.service, arguments.of_service, arguments.target)) {
+    return show_service_sensors(arguments);
+  }
   require_folder(arguments);
   const JobData job(arguments.target);
   const std::vector<Series> all = job.series();
   if (arguments.name.empty()) return list_sensors(all, arguments.format);
   const View view = make_view(job, find_series(all, arguments.name), arguments);
   if (arguments.format == Format::csv) {
+    note_samples_left_out(view.series.size(), view.samples);
     fmt::print("{}", csv_of(view, arguments.dimensionless));
   } else {
     fmt::print("{}\n", json_of(view, arguments).dump());
@@ -167,19 +211,18 @@ void show_sensors(const SensorArguments& arguments) {
 void add_sensors(CLI::App& app) {
   auto arguments = std::make_shared<SensorArguments>();
   CLI::App* verb = app.add_subcommand("sensors", "Print a job's sensors, or the series of one");
-  verb->add_option("target", arguments->target, "The job's folder; with --server, the job's id")
+  verb->add_option("target", arguments->target, "The job's folder, or the job's id at a service")
       ->required();
   verb->add_option("name", arguments->name, "The sensor; without one, all are listed");
   const std::map<std::string, FilterKind> filters{{"none", FilterKind::none},
                                                   {"gaussian", FilterKind::gaussian}};
   verb->add_option("--filter", arguments->filter, "Low-pass filter in time (eq. 12)")
-      ->transform(CLI::CheckedTransformer(filters).description("{none,gaussian}"));
-  verb->add_option("--tau", arguments->tau, "Its smoothing time, s")->check(CLI::PositiveNumber);
+      ->transform(one_of(filters));
+  verb->add_option("--tau", arguments->tau, "Its smoothing time, s")->check(number_above_zero());
   verb->add_flag("--dimensionless", arguments->dimensionless,
                  "T, X, H and P of eqs. 19-22 by the scene's scales");
   const std::map<std::string, Format> formats{{"csv", Format::csv}, {"json", Format::json}};
-  verb->add_option("--format", arguments->format, "csv by default")
-      ->transform(CLI::CheckedTransformer(formats).description("{csv,json}"));
+  verb->add_option("--format", arguments->format, "csv by default")->transform(one_of(formats));
   verb->add_flag_callback(
       "--json", [arguments] { arguments->format = Format::json; }, "The same as --format json");
   add_service_sensor_options(*verb, *arguments);

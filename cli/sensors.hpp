@@ -19,7 +19,7 @@ struct SensorArguments {
   std::optional<double> tau;
   bool dimensionless = false;
   Format format = Format::csv;
-  bool of_service = false;
+  bool of_service = false;  ///< --server was given
   ServiceOptions service;
   std::optional<double> from;
   std::optional<double> to;
@@ -28,6 +28,9 @@ struct SensorArguments {
 
 /// Adds --server, --token-file, --from, --to and --max-points.
 void add_service_sensor_options(CLI::App& verb, SensorArguments& arguments);
+
+/// Says on stderr what CSV cannot: that samples were left out, if they were.
+void note_samples_left_out(std::size_t shown, std::size_t all);
 
 /// The list or the series of a service's job, in the form of the offline ones; JSON as it came.
 /// What CSV cannot say, such as samples left out, goes to stderr.

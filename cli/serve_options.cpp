@@ -2,13 +2,15 @@
 
 #include <map>
 
+#include "cli/checks.hpp"
+
 namespace sluice {
 namespace {
 
 void add_http_options(CLI::App& verb, ServeOptions& options) {
   const std::string group = "HTTP";
   verb.add_option("--port", options.http.port, "Port; 0 picks a free one and prints it")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole_between(0, 65535))
       ->capture_default_str()
       ->group(group);
   verb.add_option("--host", options.http.host,
@@ -25,24 +27,24 @@ void add_http_options(CLI::App& verb, ServeOptions& options) {
       {"none", AccessLog::none}, {"changes", AccessLog::changes}, {"all", AccessLog::all}};
   verb.add_option("--access-log", options.log,
                   "Requests to write a line about: none, changes and errors (default), or all")
-      ->transform(CLI::CheckedTransformer(logs).description("{none,changes,all}"))
+      ->transform(one_of(logs))
       ->group(group);
 }
 
 void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
   const std::string group = "Limits";
   const auto add = [&](const char* name, auto& member, const char* text) {
-    verb.add_option(name, member, text)->capture_default_str()->group(group);
+    verb.add_option(name, member, text)->check(whole_from(0))->capture_default_str()->group(group);
   };
   const auto add_bytes = [&](const char* name, auto& member, const char* text) {
-    verb.add_option(name, member, text)->transform(CLI::AsSizeValue(false))->group(group);
+    verb.add_option(name, member, text)->transform(size_in_bytes())->group(group);
   };
   verb.add_option("--cores", limits.cores, "Threads of all workers together; 0: the machine's")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_between(0, 1024))
       ->group(group);
   add("--max-queued", limits.queued_jobs, "Jobs that may wait");
   verb.add_option("--max-study-runs", limits.runs_per_study, "Runs of a study")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_between(1, 1000))
       ->capture_default_str()
       ->group(group);
   add("--max-particles", limits.particles_per_job, "Particles of a job, walls included");
@@ -53,22 +55,22 @@ void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
             "Space that stays free: jobs pause before it is used; by default 512MB");
   verb.add_option("--max-wall-seconds", limits.wall_seconds_per_attempt,
                   "Time of an attempt, after which the job is paused; 0: no limit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->group(group);
   verb.add_option("--stalled-seconds", limits.stalled_seconds,
                   "A worker without progress for so long, not counting waits for a core, is ended "
                   "and its job tried again")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above_zero())
       ->capture_default_str()
       ->group(group);
   verb.add_option("--stop-seconds", limits.stop_seconds,
                   "A worker that was asked to stop is killed after that")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above_zero())
       ->capture_default_str()
       ->group(group);
   verb.add_option("--crash-limit", limits.crash_limit,
                   "A job fails after so many lost workers in a row without a new checkpoint")
-      ->check(CLI::Range(1, 1000000))
+      ->check(whole_between(1, 1000000))
       ->capture_default_str()
       ->group(group);
   verb.add_flag_callback(
@@ -77,7 +79,7 @@ void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
       ->group(group);
   verb.add_option("--retention-days", limits.retention_days,
                   "Delete jobs that ended so long ago; 0: never")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->group(group);
 }
 

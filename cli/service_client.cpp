@@ -11,6 +11,7 @@
 
 #include "cli/json_text.hpp"
 #include "cli/problem_text.hpp"
+#include "cli/shell_word.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/stopwatch.hpp"
 #include "service/http_guard.hpp"
@@ -55,17 +56,6 @@ std::string without_slash(std::string address) {
   return address;
 }
 
-std::string shell_word(const std::string& text) {
-  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
-  const bool needs_none = !text.empty() && std::ranges::all_of(text, [&](char c) {
-    return plain(c) || std::string_view("-._/:[]").find(c) != std::string_view::npos;
-  });
-  if (needs_none) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 /// Why an answer only says that there is no service at the moment; empty for any other.
 std::string absence(const HttpReply& reply) {
   const bool absent = reply.status == 502 || reply.status == 504 ||
@@ -94,8 +84,17 @@ void add_service_switch(CLI::App& verb, ServiceOptions& options, bool& of_servic
         options.server = server;
         of_service = true;
       },
-      "Address of the service whose job this is");
+      "Address of the service whose job this is (SLUICE_SERVER, where no such file is here)");
   add_token_option(verb, options);
+}
+
+bool is_of_service(ServiceOptions& options, bool of_service, const std::string& word) {
+  std::error_code ignored;
+  if (of_service) return true;
+  if (std::filesystem::exists(word, ignored)) return false;
+  options.server = standing(kServerVariable, kDefaultServer);
+  return !standing(kServerVariable, "").empty() || is_job_id(word) || is_study_id(word) ||
+         word == "last";
 }
 
 Patience patience_on_stderr(double seconds, std::string last_words) {
@@ -181,21 +180,16 @@ std::string ServiceClient::token_words() const {
 }
 
 std::string ServiceClient::command(std::string_view words) const {
-  if (options_.server != without_slash(standing(kServerVariable, kDefaultServer))) {
-    return command_with_server(words);
-  }
-  return fmt::format("sluice {}{}", words, token_words());
-}
-
-std::string ServiceClient::command_with_server(std::string_view words) const {
-  return fmt::format("sluice {} --server {}{}", words, options_.server, token_words());
+  const bool standard = options_.server == without_slash(standing(kServerVariable, kDefaultServer));
+  return fmt::format("sluice {}{}{}", words,
+                     standard ? "" : " --server " + shell_word(options_.server), token_words());
 }
 
 std::string job_target(const std::string& id, std::string_view rest) {
   if (is_job_id(id)) return fmt::format("/v1/jobs/{}{}", id, rest);
   throw CommandEnd(ClientExit::not_found,
                    fmt::format("\"{}\" is no job's id, which is the letter j and 20 characters of "
-                               "0-9 and a-v: see sluice list",
+                               "0-9 and a-v, nor the beginning of one, nor last: see sluice list",
                                printable(id)));
 }
 

@@ -21,9 +21,11 @@ struct ServiceOptions {
 
 /// Adds --server (SLUICE_SERVER) and --token-file (SLUICE_TOKEN_FILE) to a verb of a service.
 void add_service_options(CLI::App& verb, ServiceOptions& options);
-/// The same for a verb that also works without a service: --server sets `of_service`, and
-/// SLUICE_SERVER is left alone.
+/// The same for a verb that also works on files: --server sets `of_service`.
 void add_service_switch(CLI::App& verb, ServiceOptions& options, bool& of_service);
+/// Whether such a verb speaks to a service: when --server was given; else, when there is no file or
+/// folder called `word`, when SLUICE_SERVER is set or `word` is a whole id or "last".
+[[nodiscard]] bool is_of_service(ServiceOptions& options, bool of_service, const std::string& word);
 
 /// For how long a request is repeated while no service answers.
 struct Patience {
@@ -56,8 +58,6 @@ class ServiceClient {
   [[nodiscard]] const std::string& server() const { return options_.server; }
   /// A command line for this service: "sluice watch j0..." with the options that it needs.
   [[nodiscard]] std::string command(std::string_view words) const;
-  /// The same with --server in any case.
-  [[nodiscard]] std::string command_with_server(std::string_view words) const;
 
  private:
   [[noreturn]] void end_unreachable(const std::string& why, const std::string& advice) const;

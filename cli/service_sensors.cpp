@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
+#include "cli/checks.hpp"
+#include "cli/job_names.hpp"
 #include "cli/json_text.hpp"
 #include "cli/sensors.hpp"
 
@@ -11,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string series_target(const SensorArguments& arguments) {
+std::string series_target(const std::string& id, const SensorArguments& arguments) {
   std::string query = fmt::format("?format={}", arguments.format == Format::csv ? "csv" : "json");
   const auto add = [&query](std::string_view name, const auto& value) {
     if (value) query += fmt::format("&{}={}", name, *value);
@@ -22,8 +25,7 @@ std::string series_target(const SensorArguments& arguments) {
   add("to", arguments.to);
   add("max_points", arguments.max_points);
   if (arguments.dimensionless) query += "&dimensionless=1";
-  return job_target(arguments.target,
-                    fmt::format("/sensors/{}{}", percent_encoded(arguments.name), query));
+  return job_target(id, fmt::format("/sensors/{}{}", percent_encoded(arguments.name), query));
 }
 
 void note(const std::string& text) {
@@ -34,10 +36,8 @@ void note(const std::string& text) {
 void print_notes(const HttpReply& reply) {
   const std::string samples(reply.header("sluice-samples"));
   const auto lines = std::count(reply.body.begin(), reply.body.end(), '\n');
-  if (!samples.empty() && samples != fmt::format("{}", lines - 1)) {
-    note(fmt::format("{} of {} samples, with all extremes; see --max-points", lines - 1,
-                     printable(samples)));
-  }
+  const auto all = std::strtoull(samples.c_str(), nullptr, 10);
+  if (!samples.empty()) note_samples_left_out(static_cast<std::size_t>(lines - 1), all);
   const std::string after(reply.header("sluice-provisional-after"));
   if (!after.empty()) {
     note(fmt::format("values after {} may still change: the job goes on", printable(after)));
@@ -58,24 +58,32 @@ void print_list(const Json& list) {
 }  // namespace
 
 void add_service_sensor_options(CLI::App& verb, SensorArguments& arguments) {
-  const std::string group = "Of a service";
+  const std::string group = "Part of a series";
   add_service_switch(verb, arguments.service, arguments.of_service);
-  verb.add_option("--from", arguments.from, "First time, s")->group(group);
-  verb.add_option("--to", arguments.to, "Last time, s")->group(group);
+  verb.add_option("--from", arguments.from, "First time, s")->check(any_number())->group(group);
+  verb.add_option("--to", arguments.to, "Last time, s")->check(any_number())->group(group);
   verb.add_option("--max-points", arguments.max_points,
-                  "Samples at most, 20000 by default; fewer than there are keep all extremes")
-      ->check(CLI::Range(10, 200000))
+                  "Samples at most, 20000 of a service by default and all of a folder; fewer than "
+                  "there are "
+                  "keep all extremes")
+      ->check(whole_between(10, 200000))
       ->group(group);
+}
+
+void note_samples_left_out(std::size_t shown, std::size_t all) {
+  if (shown == all) return;
+  note(fmt::format("{} of {} samples, with all extremes; see --max-points", shown, all));
 }
 
 void show_service_sensors(const SensorArguments& arguments) {
   ServiceClient service(arguments.service);
+  const std::string id = job_named(service, arguments.target);
   if (arguments.name.empty()) {
-    const HttpReply reply = service.get(job_target(arguments.target, "/sensors"));
+    const HttpReply reply = service.get(job_target(id, "/sensors"));
     if (arguments.format == Format::json) return print_body(reply);
     return print_list(service.object_of(reply));
   }
-  const HttpReply reply = service.get(series_target(arguments));
+  const HttpReply reply = service.get(series_target(id, arguments));
   if (arguments.format == Format::csv) print_notes(reply);
   print_body(reply);
 }

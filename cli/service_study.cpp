@@ -8,6 +8,7 @@
 #include <random>
 #include <thread>
 
+#include "cli/job_names.hpp"
 #include "cli/json_text.hpp"
 #include "cli/verbs.hpp"
 
@@ -99,7 +100,7 @@ void submit_study(const ServiceStudy& options, std::string_view document,
   if (options.json && !options.watch) return print_body(reply);
   if (!options.json) {
     fmt::print("{} {}: {} runs\n", id, text_at(study, "state"), count_at(study, "run_count"));
-    fmt::print("  to look in: {}\n", service.command_with_server("study " + id));
+    fmt::print("  to look in: {}\n", service.command("study " + id));
     fmt::print("  its jobs:   {}\n", service.command("list --label " + id));
     fmt::print("  to stop:    {}\n", service.command("cancel " + id));
     std::fflush(stdout);
@@ -109,8 +110,9 @@ void submit_study(const ServiceStudy& options, std::string_view document,
   print_result(service, options, id);
 }
 
-void show_study(const ServiceStudy& options, const std::string& id) {
+void show_study(const ServiceStudy& options, const std::string& word) {
   ServiceClient service(options.service);
+  const std::string id = study_named(service, word);
   if (options.watch) watch(service, id);
   print_result(service, options, id);
 }

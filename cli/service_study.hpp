@@ -24,8 +24,8 @@ void add_service_study_options(CLI::App& verb, ServiceStudy& options);
 void submit_study(const ServiceStudy& options, std::string_view document,
                   const std::string& subject);
 
-/// Prints a study's result so far.
-void show_study(const ServiceStudy& options, const std::string& id);
+/// Prints the result so far of the study that `word` names (job_names.hpp).
+void show_study(const ServiceStudy& options, const std::string& word);
 
 /// "/v1/studies/<id>" and what follows it.
 [[nodiscard]] std::string study_target(const std::string& id, std::string_view rest = "");

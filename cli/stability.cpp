@@ -11,6 +11,7 @@
 
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
+#include "engine/run/signals.hpp"
 #include "engine/scene/problems.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/study/elliptical_drop.hpp"
@@ -94,6 +95,8 @@ void write_if_asked(const fs::path& path, const std::string& text) {
 void run_suite(const StabilityArguments& arguments) {
   const std::vector<StabilityCase> cases = chosen(arguments.cases);
   const nlohmann::ordered_json scheme = chosen_scheme(arguments.scheme);
+  // Until the process ends: a wish that comes twice must not end it before its verdicts are told.
+  static const SignalRequests signals;
   const SuiteFolder folder(arguments.folder);
   StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full, scheme);
   std::vector<JudgedCase> judged;
@@ -121,6 +124,8 @@ void run_map(const StabilityArguments& arguments) {
 }
 
 void run_order(const StabilityArguments& arguments) {
+  // Until the process ends: a wish that comes twice must not end it before its verdicts are told.
+  static const SignalRequests signals;
   const SuiteFolder folder(arguments.folder);
   StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full,
                        chosen_scheme(arguments.scheme));

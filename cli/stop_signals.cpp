@@ -11,19 +11,18 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "engine/run/stop_wish.hpp"
+
 namespace sluice {
 namespace {
 
-constexpr std::array kSignals{SIGTERM, SIGINT, SIGHUP};
-
 /// The ends of a pipe: a handler may only write to one.
 std::array<int, 2> pipe_ends{-1, -1};
-volatile std::sig_atomic_t stop_asked = 0;
+StopWish stop_wish;
 
 void take(int signal) {
-  if (stop_asked != 0) ::_exit(128 + signal);
-  stop_asked = 1;
   const int error = errno;
+  if (stop_wish.take() == StopWish::Kind::at_once) ::_exit(128 + signal);
   [[maybe_unused]] const auto written = ::write(pipe_ends[1], "", 1);
   errno = error;
 }
@@ -42,13 +41,14 @@ StopSignals::StopSignals() {
   if (::pipe2(pipe_ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
     throw std::runtime_error(fmt::format("cannot wait for signals: {}", std::strerror(errno)));
   }
-  stop_asked = 0;
-  for (const int signal : kSignals) set_action(signal, &take);
+  stop_wish.forget();
+  signals_ = stop_signals();
+  for (const int signal : signals_) set_action(signal, &take);
   set_action(SIGPIPE, SIG_IGN);
 }
 
 StopSignals::~StopSignals() {
-  for (const int signal : kSignals) set_action(signal, SIG_DFL);
+  for (const int signal : signals_) set_action(signal, SIG_DFL);
   for (const int end : pipe_ends) ::close(end);
 }
 

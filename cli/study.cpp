@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "cli/adopt_scene.hpp"
+#include "cli/checks.hpp"
 #include "cli/run_pool.hpp"
 #include "cli/service_study.hpp"
 #include "cli/verbs.hpp"
@@ -100,9 +101,10 @@ class StudyFolder {
 /// Runs what is not done yet, several at once, and says how each ended.
 class StudyRunner {
  public:
-  StudyRunner(const StudyPlan& plan, const StudyFolder& folder, int cores)
+  StudyRunner(const StudyPlan& plan, const StudyFolder& folder, int cores, RunPool& pool)
       : plan_(plan),
         folder_(folder),
+        pool_(pool),
         at_once_(static_cast<std::size_t>(std::max(1, cores / plan.study.threads))) {}
 
   /// False when it was asked to stop before the end.
@@ -160,17 +162,18 @@ class StudyRunner {
     pool_.stop_all();
   }
 
+  /// A terminal that was closed is no reason to end: nothing here throws.
   static void say(const std::string& text) {
-    fmt::print(stderr, "{}\n", text);
+    std::fputs((text + "\n").c_str(), stderr);
     std::fflush(stderr);
   }
 
   const StudyPlan& plan_;
   const StudyFolder& folder_;
+  RunPool& pool_;
   std::size_t at_once_;
   std::size_t done_ = 0;
   bool stopping_ = false;
-  RunPool pool_;
 };
 
 void end_unless_complete(const StudyResult& result, const fs::path& folder) {
@@ -211,12 +214,16 @@ void study_by_service(const StudyArguments& arguments) {
   }
   ServiceStudy options = arguments.service;
   options.json = arguments.json;
-  if (is_study_id(arguments.study)) return show_study(options, arguments.study);
+  std::error_code ignored;
+  if (!fs::exists(arguments.study, ignored)) return show_study(options, arguments.study);
   submit_study(options, whole_document(arguments), arguments.study);
 }
 
-void study(const StudyArguments& arguments) {
-  if (arguments.service.of_service) return study_by_service(arguments);
+void study(StudyArguments arguments) {
+  ServiceStudy& service = arguments.service;
+  if (is_of_service(service.service, service.of_service, arguments.study)) {
+    return study_by_service(arguments);
+  }
   if (arguments.service.watch || !arguments.service.key.empty()) {
     throw CommandEnd(ExitCode::usage, "--watch and --idempotency-key go with --server");
   }
@@ -227,13 +234,15 @@ void study(const StudyArguments& arguments) {
   const StudyFolder folder(root);
   folder.make();
   const FolderLock lock(folder.lock());
+  // Until the results are written: a signal that comes twice must not end the study before.
+  RunPool pool;
   bool finished = true;
   if (!arguments.no_run) {
     publish_text(root / "study.json", read_text(arguments.file(), kMaxSceneBytes + 1));
     const int cores = arguments.cores > 0
                           ? arguments.cores
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    finished = StudyRunner(plan, folder, cores).run_all();
+    finished = StudyRunner(plan, folder, cores, pool).run_all();
   }
   const StudyResult result = folder.read(plan);
   folder.publish(result);
@@ -257,10 +266,10 @@ void add_study(CLI::App& app) {
                    "Where its runs and results go, and where it goes on; by default the study's "
                    "name in this folder");
   verb->add_option("--cores", arguments->cores, "Cores to use; by default all")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_between(1, 1024));
   verb->add_option("--below", arguments->below,
                    "An error for which the cheapest set-up is sought, beside the study's targets")
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_zero());
   verb->add_flag("--json", arguments->json, "Print JSON for programs");
   verb->add_flag("--no-run", arguments->no_run, "Only put together what is there");
   add_service_study_options(*verb, arguments->service);

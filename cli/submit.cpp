@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 
+#include "cli/checks.hpp"
 #include "cli/job_text.hpp"
 #include "cli/json_text.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/service_client.hpp"
 #include "cli/service_study.hpp"
+#include "cli/shell_word.hpp"
 #include "cli/verbs.hpp"
 #include "cli/watch.hpp"
 
@@ -73,7 +75,7 @@ std::string sensor_to_show(const std::string& scene) {
   const Json sensors = member(Json::parse(scene, nullptr, /*allow_exceptions=*/false), "sensors");
   for (const Json& sensor : sensors) {
     if (text_at(sensor, "kind") == "pressure") {
-      return fmt::format(" {} --filter gaussian --tau 0.002", text_at(sensor, "name"));
+      return fmt::format(" {} --filter gaussian --tau 0.002", shell_word(text_at(sensor, "name")));
     }
   }
   return {};
@@ -89,7 +91,7 @@ void print_submitted(const ServiceClient& service, const HttpReply& reply, const
   fmt::print("{}", estimate_text(member(job, "estimate")));
   fmt::print("  to watch:   {}\n", service.command("watch " + id));
   fmt::print("  to look in: {}\n",
-             service.command_with_server(fmt::format("sensors {}{}", id, sensor_to_show(scene))));
+             service.command(fmt::format("sensors {}{}", id, sensor_to_show(scene))));
   fmt::print("  to stop:    {}\n", service.command("cancel " + id));
   std::fflush(stdout);
 }
@@ -119,12 +121,14 @@ void submit(const SubmitArguments& arguments) {
 }
 
 void add_submit_options(CLI::App& verb, SubmitArguments& arguments) {
-  verb.add_option("scene", arguments.scene, "A scene (JSON), or - for stdin")->required();
+  verb.add_option("scene", arguments.scene, "A scene (JSON), or - for stdin")
+      ->required()
+      ->check(file_or_stdin());
   verb.add_option("--label", arguments.label, "A word of yours, to find the job by");
   verb.add_option("--priority", arguments.priority, "Higher runs first; 0 by default")
-      ->check(CLI::Range(-1000, 1000));
+      ->check(whole_between(-1000, 1000));
   verb.add_option("--threads", arguments.threads, "Threads of the job; 1 by default")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_between(1, 1024));
   verb.add_option("--idempotency-key", arguments.key,
                   "One key makes one job, however often it is submitted; by default a new one");
   auto* dry = verb.add_flag("--dry-run", arguments.dry_run,

@@ -53,5 +53,7 @@ void add_resume(CLI::App& app);
 void add_checkpoint(CLI::App& app);
 void add_delete(CLI::App& app);
 void add_stability(CLI::App& app);
+void add_help(CLI::App& app);
+void add_version(CLI::App& app);
 
 }  // namespace sluice

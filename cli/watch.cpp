@@ -11,6 +11,8 @@
 #include <string_view>
 #include <thread>
 
+#include "cli/checks.hpp"
+#include "cli/job_names.hpp"
 #include "cli/job_text.hpp"
 #include "cli/json_text.hpp"
 #include "cli/verbs.hpp"
@@ -51,7 +53,7 @@ std::string next_commands(const ServiceClient& service, const Json& job) {
   if (state == "failed") text += fmt::format("  diagnosis:  {}\n", command("show"));
   for (const char* const verb : {"sensors", "report"}) {
     const std::string words = fmt::format("{} {}", verb, id);
-    text += fmt::format("  to look in: {}\n", service.command_with_server(words));
+    text += fmt::format("  to look in: {}\n", service.command(words));
   }
   return text;
 }
@@ -115,7 +117,9 @@ void watch(const WatchArguments& arguments) {
   ServiceClient service(arguments.service);
   WatchOptions options = arguments.watch;
   if (arguments.json) options.form = WatchForm::json;
-  watch_job(service, arguments.id, options);
+  const Patience patience = patience_on_stderr(
+      std::min(options.retry, kFirstTry), "the job goes on where its service is; see --server");
+  watch_job(service, job_named(service, arguments.id, patience), options);
 }
 
 }  // namespace
@@ -124,12 +128,12 @@ void add_watch_options(CLI::App& verb, WatchOptions& options) {
   const std::map<std::string, WatchForm> forms{
       {"auto", WatchForm::automatic}, {"bar", WatchForm::bar}, {"lines", WatchForm::lines}};
   verb.add_option("--progress", options.form, "auto: a bar on a terminal, else lines")
-      ->transform(CLI::CheckedTransformer(forms).description("{auto,bar,lines}"));
+      ->transform(one_of(forms));
   verb.add_option("--interval", options.interval, "Seconds between lines of progress")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->capture_default_str();
   verb.add_option("--retry", options.retry, "Seconds to go on trying while no service answers")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(number_between(0.0, 1e9))
       ->capture_default_str();
 }
 
@@ -144,7 +148,7 @@ void watch_job(ServiceClient& service, const std::string& id, const WatchOptions
 void add_watch(CLI::App& app) {
   auto arguments = std::make_shared<WatchArguments>();
   CLI::App* verb = app.add_subcommand("watch", "Show a service's job until it ends or is paused");
-  verb->add_option("id", arguments->id, "The job's id")->required();
+  verb->add_option("id", arguments->id, "The job's id, the beginning of it, or last")->required();
   add_service_options(*verb, arguments->service);
   add_watch_options(*verb, arguments->watch);
   verb->add_flag("--json", arguments->json, "The job's JSON, one line for each change");

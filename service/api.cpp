@@ -11,6 +11,7 @@
 #include "engine/store/errors.hpp"
 #include "service/api_routes.hpp"
 #include "service/job_ids.hpp"
+#include "service/job_json.hpp"
 #include "service/service_log.hpp"
 #include "service/study_jobs.hpp"
 
@@ -191,6 +192,10 @@ Response handle_or_fail(ApiContext& context, const Request& request) {
 }  // namespace
 
 std::span<const Route> all_routes() { return kRoutes; }
+
+nlohmann::ordered_json document_of(const ApiContext& context, const Job& job) {
+  return job_document(job, context.scheduler.why_waiting(job), context.scheduler.worker_of(job));
+}
 
 Job find_job(const ApiContext& context, const std::string& id) {
   const bool ours = is_job_id(id);

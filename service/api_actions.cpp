@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 /// 202 while a running worker has yet to obey.
 Response answer(const ApiContext& context, const Job& job) {
   const bool pending = job.pending_stop != PendingStop::none;
-  return json_response(pending ? 202 : 200, job_document(job, context.scheduler.why_waiting(job)));
+  return json_response(pending ? 202 : 200, document_of(context, job));
 }
 
 Response act(ApiContext& context, const std::string& id, JobAction action,
@@ -45,7 +45,7 @@ Response act(ApiContext& context, const RouteRequest& request, JobAction action)
                  {{"errors", Json::array({{{"pointer", pointer}, {"detail", detail}}})}});
 }
 
-/// The later end time of a resume, s; nothing when the body is empty or an empty object.
+/// The end time of a resume, s; nothing when the body is empty or an empty object.
 std::optional<double> read_end_time(const std::string& body) {
   if (body.empty()) return std::nullopt;
   Problems problems;
@@ -134,7 +134,9 @@ Response resume_job(ApiContext& context, const RouteRequest& request) {
   const auto end_time = read_end_time(request.http.body);
   const std::scoped_lock one_at_a_time(context.resumes);
   const Job job = find_job(context, request.parts[0]);
-  if (!end_time) return act(context, job.id, JobAction::resume, {});
+  // A cancelled job goes on to its own end, also when that is named.
+  const bool same_end = job.state == JobState::cancelled && end_time == job.end_time;
+  if (!end_time || same_end) return act(context, job.id, JobAction::resume, {});
   Response response = extend(context, job, *end_time);
   context.scheduler.poke();
   return response;
@@ -148,7 +150,7 @@ Response checkpoint_job(ApiContext& context, const RouteRequest& request) {
                    fmt::format("job {} is {}: only a running job can write a checkpoint", job.id,
                                to_string(job.state)));
   }
-  return json_response(202, job_document(job, ""));
+  return json_response(202, document_of(context, job));
 }
 
 }  // namespace sluice

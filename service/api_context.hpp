@@ -3,6 +3,7 @@
 #include <atomic>
 #include <filesystem>
 #include <mutex>
+#include <nlohmann/json_fwd.hpp>
 #include <semaphore>
 #include <string>
 #include <vector>
@@ -60,6 +61,8 @@ struct RouteRequest {
 
 /// The job that the request names. Throws ApiError(no_such_job).
 [[nodiscard]] Job find_job(const ApiContext& context, const std::string& id);
+/// The job's JSON, with what the scheduler knows of it now.
+[[nodiscard]] nlohmann::ordered_json document_of(const ApiContext& context, const Job& job);
 /// The study that the request names. Throws ApiError(no_such_study).
 [[nodiscard]] StudyRecord find_study(const ApiContext& context, const std::string& id);
 

@@ -29,7 +29,7 @@ std::string tag_of(const std::string& text) {
 }
 
 Response shown(const ApiContext& context, const Job& job) {
-  Response response = json_response(200, job_document(job, context.scheduler.why_waiting(job)));
+  Response response = json_response(200, document_of(context, job));
   response.headers.emplace_back("ETag", tag_of(response.body));
   response.headers.emplace_back("Cache-Control", "no-cache");
   return response;

@@ -46,8 +46,7 @@ std::string hash_of(const Request& request, const JobOptions& options) {
 }
 
 Response accepted(const ApiContext& context, const Job& job, bool repeated) {
-  return accepted_response(fmt::format("/v1/jobs/{}", job.id),
-                           job_document(job, context.scheduler.why_waiting(job)), repeated);
+  return accepted_response(fmt::format("/v1/jobs/{}", job.id), document_of(context, job), repeated);
 }
 
 Job new_job(ApiContext& context, const Admitted& admitted, const JobOptions& options) {

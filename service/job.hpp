@@ -22,7 +22,7 @@ enum class JobAction {
   fail,      ///< numerical failure, no usable checkpoint, or the crash limit
   requeue,   ///< its worker was lost, or drained: running -> queued
   pause,     ///< asked for, or the disk is full
-  resume,    ///< paused -> queued; an ended one with a later end time, too
+  resume,    ///< paused or cancelled -> queued; completed or failed with a later end time, too
   cancel,
   release,  ///< its worker checkpointed because a pause was asked for: running -> paused
 };

@@ -64,8 +64,9 @@ Json job_summary(const Job& job, const std::string& waiting) {
               {"waiting", text_or_null(waiting)}};
 }
 
-Json job_document(const Job& job, const std::string& waiting) {
+Json job_document(const Job& job, const std::string& waiting, std::optional<int> worker) {
   Json document = job_summary(job, waiting);
+  document["pid"] = worker ? Json(*worker) : Json(nullptr);
   document["scene_hash"] = job.scene_hash;
   document["estimate"] = stored_json(job.estimate);
   document["outcome"] = stored_json(job.outcome);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,8 +14,10 @@ namespace sluice {
 /// empty). Times are RFC 3339 in UTC.
 [[nodiscard]] nlohmann::ordered_json job_summary(const Job& job, const std::string& waiting);
 
-/// A job as GET /v1/jobs/{id} shows it: the summary, estimate, outcome and links.
-[[nodiscard]] nlohmann::ordered_json job_document(const Job& job, const std::string& waiting);
+/// A job as GET /v1/jobs/{id} shows it: the summary, the process that runs it (`pid`, null without
+/// one), estimate, outcome and links.
+[[nodiscard]] nlohmann::ordered_json job_document(const Job& job, const std::string& waiting,
+                                                  std::optional<int> worker);
 
 /// An event's number, job, time, name and detail.
 [[nodiscard]] nlohmann::ordered_json event_json(const JobEvent& event);

@@ -73,6 +73,13 @@ class Scheduler::Impl {
     return place_text(job, status, now);
   }
 
+  [[nodiscard]] std::optional<pid_t> worker_of(const Job& job) const {
+    if (job.state != JobState::running) return {};
+    const SchedulerStatus status = board_.status();
+    const auto found = status.workers.find(job.id);
+    return found == status.workers.end() ? std::nullopt : std::optional(found->second);
+  }
+
   [[nodiscard]] const ServiceLimits& limits() const { return limits_; }
 
  private:
@@ -116,6 +123,8 @@ void Scheduler::drain() { impl_->drain(); }
 bool Scheduler::checkpoint_now(const std::string& id) { return impl_->checkpoint_now(id); }
 
 std::string Scheduler::why_waiting(const Job& job) const { return impl_->why_waiting(job); }
+
+std::optional<pid_t> Scheduler::worker_of(const Job& job) const { return impl_->worker_of(job); }
 
 const ServiceLimits& Scheduler::limits() const { return impl_->limits(); }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "service/job_store.hpp"
@@ -55,6 +58,8 @@ class Scheduler {
   bool checkpoint_now(const std::string& id);
   /// Why a queued job does not run yet, for a person; empty for a job that is not queued.
   [[nodiscard]] std::string why_waiting(const Job& job) const;
+  /// The process that runs the job; nothing when none does, or one of a service before this.
+  [[nodiscard]] std::optional<pid_t> worker_of(const Job& job) const;
   [[nodiscard]] const ServiceLimits& limits() const;
 
  private:

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
@@ -17,6 +20,7 @@ struct SchedulerStatus {
   int cores = 0;
   int free_threads = 0;
   BackOffs back_offs;
+  std::map<std::string, pid_t> workers;  ///< of the attempts that run, by job
 };
 
 /// Where the scheduler's thread and all others meet: requests go in, the status comes out.

@@ -135,7 +135,11 @@ void SchedulerLoop::tick() {
 }
 
 void SchedulerLoop::publish_status() {
-  board_.publish({disk_low_, cores_, free_threads(), conclusions_.back_offs()});
+  std::map<std::string, pid_t> workers;
+  for (const Attempt& attempt : attempts_) {
+    workers.emplace(attempt.job().id, attempt.process().pid());
+  }
+  board_.publish({disk_low_, cores_, free_threads(), conclusions_.back_offs(), workers});
 }
 
 }  // namespace sluice

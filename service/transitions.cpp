@@ -64,7 +64,7 @@ constexpr std::array kTransitions = {
 
     Transition{kCompleted, Actor::user, JobAction::resume, kQueued, "extended", true},
     Transition{kFailed, Actor::user, JobAction::resume, kQueued, "extended", true},
-    Transition{kCancelled, Actor::user, JobAction::resume, kQueued, "extended", true},
+    Transition{kCancelled, Actor::user, JobAction::resume, kQueued, "resumed"},
     Transition{kCancelled, Actor::user, JobAction::cancel, kCancelled, ""},
 };
 
@@ -80,7 +80,7 @@ std::string describe(const Job& job) {
 
 std::string advice(const Job& job, JobAction action) {
   if (action == JobAction::resume && job.pending_stop == PendingStop::cancel) {
-    return "wait until it is cancelled, then resume it with a later end time";
+    return "wait until it is cancelled, then resume it";
   }
   if (is_ended(job.state)) return "it has ended; resume it with a later end time to go on";
   return "see the table of transitions in service/README.md";

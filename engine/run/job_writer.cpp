@@ -11,6 +11,14 @@
 #include "engine/store/series_file.hpp"
 
 namespace sluice {
+namespace {
+
+/// Whether trying again can help.
+bool may_pass(const StorageError& error) {
+  return error.fault() != StorageFault::invalid_content && error.fault() != StorageFault::lost;
+}
+
+}  // namespace
 
 JobWriter::JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter)
     : folder_(&folder),
@@ -36,7 +44,7 @@ void JobWriter::checkpoint_soon(const Simulation& simulation) {
     backoff_.succeeded();
   } catch (const StorageError& error) {
     backoff_.failed(now);
-    if (backoff_.exhausted() || error.fault() == StorageFault::invalid_content) throw;
+    if (backoff_.exhausted() || !may_pass(error)) throw;
     warn("a checkpoint", error, backoff_.next_try() - now);
   }
 }
@@ -90,7 +98,8 @@ void JobWriter::write_due_frame(Simulation& simulation) {
   const Frame frame = make_frame(simulation.solver().state(), simulation.scene().method);
   const auto path = folder_->paths().frame(*index);
   persist("a frame", [&] {
-    std::filesystem::create_directories(path.parent_path());
+    folder_->require_held();
+    std::filesystem::create_directory(path.parent_path());
     write_frame(path, frame);
   });
   simulation.frame_written();
@@ -101,8 +110,10 @@ void JobWriter::refresh_series(const Simulation& simulation) {
   const double start = clock_.seconds();
   if (simulation.samples().empty() || start < next_series_) return;
   try {
+    folder_->require_held();
     write_series(folder_->paths().series(), simulation.samples());
   } catch (const StorageError& error) {
+    if (!may_pass(error)) throw;
     warn("series.h5", error, 10.0);
     next_series_ = start + 10.0;
     return;
@@ -116,6 +127,7 @@ void JobWriter::finish_series(const Simulation& simulation) {
   if (simulation.samples().empty()) return;
   const double start = clock_.seconds();
   persist("series.h5", [&] {
+    folder_->require_held();
     write_series(folder_->paths().series(), simulation.samples(), Durability::power_cut);
   });
   output_seconds_ += clock_.seconds() - start;
@@ -150,7 +162,7 @@ void JobWriter::persist(std::string_view what, const std::function<void()>& writ
     } catch (const StorageError& error) {
       const double now = clock_.seconds();
       backoff.failed(now);
-      if (backoff.exhausted() || error.fault() == StorageFault::invalid_content) throw;
+      if (backoff.exhausted() || !may_pass(error)) throw;
       warn(what, error, backoff.next_try() - now);
       std::this_thread::sleep_for(std::chrono::duration<double>(backoff.next_try() - now));
     }

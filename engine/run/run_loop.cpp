@@ -73,13 +73,13 @@ class RunLoop {
   }
 
   bool stop_asked() {
-    const Request request = signals_->take();
-    if (request == Request::checkpoint) writer_.checkpoint_soon(*simulation_);
-    if (request == Request::stop) stop_reason_ = "stopped by a signal";
+    const RunRequest request = signals_->take();
+    if (request == RunRequest::checkpoint) writer_.checkpoint_soon(*simulation_);
+    if (request == RunRequest::stop) stop_reason_ = "stopped by a signal";
     const bool enough =
         options_.stop_after_step && simulation_->solver().step_count() >= *options_.stop_after_step;
     if (enough) stop_reason_ = "stopped after the step asked for";
-    return enough || request == Request::stop;
+    return enough || request == RunRequest::stop;
   }
 
   void report() {
@@ -155,7 +155,7 @@ class RunLoop {
 Json started_fields(const Simulation& simulation, const JobFolder& folder) {
   const Solver& solver = simulation.solver();
   return Json{{"scene", simulation.scene().name},
-              {"folder", folder.paths().root().string()},
+              {"folder", folder.name().string()},
               {"step", solver.step_count()},
               {"time", solver.time()},
               {"end_time", simulation.scene().end_time},
@@ -237,6 +237,7 @@ Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options
                 Reporter& reporter) {
   // Before the first event and until after the last, so that no signal that answers one is lost.
   SignalRequests signals;
+  signals.empty_when_ended_at_once(folder.lock());
   LoggingReporter logging(reporter, folder.paths().log());
   std::optional<Restored> restored = find_checkpoint(folder, scene, logging);
   // An outcome of an earlier attempt says nothing about this one.
@@ -266,6 +267,7 @@ ExitCode exit_code_of(StorageFault fault) {
     case StorageFault::unwritable:
     case StorageFault::corrupt:
     case StorageFault::invalid_content:
+    case StorageFault::lost:
       return ExitCode::storage_failure;
   }
   return ExitCode::storage_failure;

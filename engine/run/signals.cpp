@@ -2,65 +2,80 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <csignal>
+#include <vector>
+
+#include "engine/run/stop_wish.hpp"
 
 namespace sluice {
 namespace {
 
 // Lock-free atomics are what a signal handler may touch.
 std::atomic<bool> g_checkpoint{false};
-std::atomic<int> g_stops{0};
+std::atomic<int> g_emptied{-1};
+StopWish g_stop;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 void on_checkpoint(int) { g_checkpoint.store(true); }
 
 void on_stop(int signal_number) {
-  if (g_stops.fetch_add(1) > 0) _exit(128 + signal_number);
+  if (g_stop.take() != StopWish::Kind::at_once) return;
+  [[maybe_unused]] const int result = ::ftruncate(g_emptied, 0);
+  ::_exit(128 + signal_number);
 }
 
 struct Action {
   int signal_number;
   void (*handler)(int);
 };
-const std::array<Action, 6> kActions{{{SIGUSR1, on_checkpoint},
-                                      {SIGTERM, on_stop},
-                                      {SIGINT, on_stop},
-                                      {SIGHUP, on_stop},
-                                      {SIGPIPE, SIG_IGN},
-                                      {SIGXFSZ, SIG_IGN}}};
-std::array<struct sigaction, kActions.size()> g_previous;
+
+std::vector<Action> actions() {
+  std::vector<Action> all{{SIGUSR1, on_checkpoint}, {SIGPIPE, SIG_IGN}, {SIGXFSZ, SIG_IGN}};
+  for (const int number : stop_signals()) all.push_back({number, on_stop});
+  return all;
+}
+
+struct Previous {
+  int signal_number;
+  struct sigaction action;
+};
+std::vector<Previous> g_previous;
+int g_holders = 0;
 
 }  // namespace
 
 SignalRequests::SignalRequests() {
+  if (g_holders++ > 0) return;
   g_checkpoint = false;
-  g_stops = 0;
-  for (std::size_t i = 0; i < kActions.size(); ++i) {
+  g_stop.forget();
+  g_previous.clear();
+  for (const Action& wanted : actions()) {
     struct sigaction action {};
-    action.sa_handler = kActions[i].handler;
+    action.sa_handler = wanted.handler;
     sigemptyset(&action.sa_mask);
     action.sa_flags = SA_RESTART;
-    sigaction(kActions[i].signal_number, nullptr, &g_previous[i]);
-    // A program started with nohup stays deaf to the terminal that goes away.
-    const bool stays_ignored =
-        kActions[i].signal_number == SIGHUP && g_previous[i].sa_handler == SIG_IGN;
-    if (!stays_ignored) sigaction(kActions[i].signal_number, &action, nullptr);
+    struct sigaction before {};
+    sigaction(wanted.signal_number, &action, &before);
+    g_previous.push_back({wanted.signal_number, before});
   }
 }
 
 SignalRequests::~SignalRequests() {
-  for (std::size_t i = 0; i < kActions.size(); ++i) {
-    sigaction(kActions[i].signal_number, &g_previous[i], nullptr);
+  g_emptied = -1;
+  if (--g_holders > 0) return;
+  for (const Previous& previous : g_previous) {
+    sigaction(previous.signal_number, &previous.action, nullptr);
   }
 }
 
-Request SignalRequests::take() {
-  if (stop_requested()) return Request::stop;
-  return g_checkpoint.exchange(false) ? Request::checkpoint : Request::none;
+RunRequest SignalRequests::take() {
+  if (stop_requested()) return RunRequest::stop;
+  return g_checkpoint.exchange(false) ? RunRequest::checkpoint : RunRequest::none;
 }
 
-bool SignalRequests::stop_requested() const { return g_stops.load() > 0; }
+void SignalRequests::empty_when_ended_at_once(int descriptor) { g_emptied = descriptor; }
+
+bool SignalRequests::stop_requested() const { return g_stop.asked(); }
 
 }  // namespace sluice

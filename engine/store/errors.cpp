@@ -67,6 +67,8 @@ std::string_view to_string(StorageFault fault) {
       return "locked";
     case StorageFault::no_usable_checkpoint:
       return "no_usable_checkpoint";
+    case StorageFault::lost:
+      return "lost";
   }
   return "unknown";
 }

@@ -20,6 +20,7 @@ enum class StorageFault {
   already_exists,       ///< the folder holds a job already
   locked,               ///< another process runs this job
   no_usable_checkpoint,  ///< checkpoints exist, none of them can be used
+  lost,                  ///< the folder that is held is no longer there, or others may hold it too
 };
 [[nodiscard]] std::string_view to_string(StorageFault fault);
 

@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kBadSuffix = ".bad";
+constexpr const char* kHere = ".";
 /// Far above any scene that the parser takes.
 constexpr std::uint64_t kLargestScene = std::uint64_t{1} << 24;
 
@@ -80,10 +81,10 @@ void require_plain_file(const FileDescriptor& descriptor, const fs::path& path) 
   }
 }
 
-bool is_still_at(const FileDescriptor& descriptor, const fs::path& path) {
+bool is_still_at(int descriptor, const fs::path& path) {
   struct stat held {};
   struct stat named {};
-  return ::fstat(descriptor.get(), &held) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+  return ::fstat(descriptor, &held) == 0 && ::lstat(path.c_str(), &named) == 0 &&
          held.st_dev == named.st_dev && held.st_ino == named.st_ino;
 }
 
@@ -127,7 +128,7 @@ FileDescriptor take_lock(const fs::path& path) {
     lock_or_throw(descriptor, path);
     // Someone may have removed the file between opening and locking: then nobody else sees this
     // lock.
-    if (is_still_at(descriptor, path)) {
+    if (is_still_at(descriptor.get(), path)) {
       write_holder(descriptor);
       return descriptor;
     }
@@ -135,6 +136,12 @@ FileDescriptor take_lock(const fs::path& path) {
 }
 
 // --- making and opening
+
+fs::path absolute_or_same(const fs::path& path) {
+  std::error_code error;
+  fs::path absolute = fs::absolute(path, error);
+  return error ? path : absolute;
+}
 
 void require_writable(const fs::path& folder) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
@@ -206,8 +213,20 @@ std::vector<fs::path> JobPaths::frame_files() const {
 
 FolderLock::FolderLock(const fs::path& path) : descriptor_(take_lock(path)) {}
 
+FolderLock::~FolderLock() {
+  // While it is locked: afterwards the number may be the next holder's.
+  if (descriptor_.get() < 0) return;
+  [[maybe_unused]] const int result = ::ftruncate(descriptor_.get(), 0);
+}
+
+bool FolderLock::is_at(const fs::path& path) const { return is_still_at(descriptor_.get(), path); }
+
 JobFolder::JobFolder(JobPaths paths, FileSystem& system)
-    : paths_(std::move(paths)), lock_(paths_.lock()), system_(&system) {
+    : name_(paths.root()),
+      absolute_(absolute_or_same(name_)),
+      paths_(std::move(paths)),
+      lock_(paths_.lock()),
+      system_(&system) {
   remove_leftovers(paths_.root());
   remove_leftovers(paths_.frames());
 }
@@ -244,6 +263,32 @@ bool JobFolder::holds_job(const fs::path& folder) {
   return fs::is_regular_file(JobPaths(folder).scene(), ignored);
 }
 
+fs::path JobFolder::name() const {
+  std::error_code error;
+  if (fs::equivalent(absolute_, paths_.root(), error)) return name_;
+  const fs::path now = fs::canonical(paths_.root(), error);
+  return error ? name_ : now;
+}
+
+void JobFolder::enter() {
+  if (paths_.root() == kHere) return;
+  if (::chdir(paths_.root().c_str()) != 0) {
+    throw system_error("cannot enter the folder", paths_.root(), errno);
+  }
+  paths_ = JobPaths(kHere);
+  require_held();
+}
+
+void JobFolder::require_held() const {
+  if (is_held()) return;
+  throw StorageError(
+      StorageFault::lost,
+      fmt::format("{}: this folder or the lock file in it was removed or replaced while the job "
+                  "ran; nothing more is written there. A copy of the folder goes on from its "
+                  "newest checkpoint",
+                  name_.string()));
+}
+
 std::string JobFolder::scene_text() const { return read_text(paths_.scene(), kLargestScene); }
 
 std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectation) {
@@ -278,6 +323,7 @@ std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectat
 }
 
 fs::path JobFolder::write_checkpoint(const Checkpoint& checkpoint) {
+  require_held();
   fs::path path = sluice::write_checkpoint(paths_.root(), checkpoint, *system_);
   verified_.insert(path);
   return path;
@@ -303,6 +349,7 @@ std::vector<fs::path> JobFolder::prune() {
 }
 
 void JobFolder::publish_text(const fs::path& path, std::string_view text) {
+  require_held();
   sluice::publish_text(path, text, *system_);
 }
 

@@ -45,12 +45,20 @@ class JobPaths {
 };
 
 /// Sole use of a job folder: an flock on its lock file for the life of the holder. The system frees
-/// it when the process ends, however it ends.
+/// it when the process ends, however it ends. The file holds the holder's process number, for
+/// people; it is empty again at the end of the holder's life, but not after a kill.
 class FolderLock {
  public:
   /// Throws StorageError: locked, naming the holder's process; unwritable; not_ours when the lock
   /// file is a symbolic link or no regular file.
   explicit FolderLock(const std::filesystem::path& path);
+  FolderLock(FolderLock&&) noexcept = default;
+  FolderLock& operator=(FolderLock&&) noexcept = default;
+  ~FolderLock();
+
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+  /// Whether the file at `path` is the one that is locked.
+  [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
 
  private:
   FileDescriptor descriptor_;
@@ -80,6 +88,20 @@ class JobFolder {
   [[nodiscard]] static bool holds_job(const std::filesystem::path& folder);
 
   [[nodiscard]] const JobPaths& paths() const { return paths_; }
+  /// The path of the folder for people: the one that it was opened by, or where it is since.
+  [[nodiscard]] std::filesystem::path name() const;
+  /// The open lock file.
+  [[nodiscard]] int lock() const { return lock_.descriptor(); }
+
+  /// Makes the folder this process's working directory and its paths relative to it: what is
+  /// written goes into this very folder, whatever it is called later. Before checkpoints are read
+  /// or written. Throws StorageError: lost, unwritable, io.
+  void enter();
+  /// Throws StorageError(lost) unless this very folder is at its paths, with the lock that is held
+  /// in it. To be asked before anything is written.
+  void require_held() const;
+  [[nodiscard]] bool is_held() const { return lock_.is_at(paths_.lock()); }
+
   [[nodiscard]] std::string scene_text() const;
 
   /// The newest checkpoint that can be used; empty when the job never had one. A damaged one is
@@ -104,6 +126,8 @@ class JobFolder {
   void put_aside(const std::filesystem::path& path);
   [[nodiscard]] bool is_verified(const std::filesystem::path& path);
 
+  std::filesystem::path name_;
+  std::filesystem::path absolute_;  ///< of name_
   JobPaths paths_;
   FolderLock lock_;
   FileSystem* system_;

@@ -170,7 +170,11 @@ class Story(Case):
         few = self.expect(DONE, "sensors", job, "P1", "--max-points", "10", *at)
         self.assertLessEqual(len(few.stdout.splitlines()), 11)
         self.assertIn("--max-points", few.stderr)
-        self.expect(USAGE, "sensors", self.folder, "P1", "--from", "0.1")
+        folder = os.path.join(self.data, "jobs", job)
+        for options in (("--from", "0.1", "--to", "0.2"), ("--max-points", "10")):
+            here = self.expect(DONE, "sensors", folder, "P1", *options)
+            there = self.expect(DONE, "sensors", job, "P1", *options, *at)
+            self.assertEqual((here.stdout, here.stderr), (there.stdout, there.stderr))
 
     def test_what_programs_read_is_json(self):
         server = self.serve()
@@ -248,10 +252,10 @@ class Errors(Case):
 
     def test_a_scene_that_cannot_be_read_never_leaves(self):
         nowhere = f"http://127.0.0.1:{closed_port()}"
-        for path in (os.path.join(self.folder, "none.json"), self.folder,
-                     self.write(" " * (256 * 1024 + 1))):
+        for path, code in ((os.path.join(self.folder, "none.json"), USAGE), (self.folder, USAGE),
+                           (self.write(" " * (256 * 1024 + 1)), INVALID_SCENE)):
             with self.subTest(path=path):
-                said = self.expect(INVALID_SCENE, "submit", path, "--server", nowhere).stderr
+                said = self.expect(code, "submit", path, "--server", nowhere).stderr
                 self.assertIn(path, said)
         self.expect(INVALID_SCENE, "submit", "-", "--server", nowhere, stdin=" " * 300000)
 
@@ -303,7 +307,7 @@ class Errors(Case):
         self.assertIn("chmod 600", self.expect(USAGE, "list", "--token-file", token, *at).stderr)
 
     def test_a_folder_that_is_none_points_to_the_service(self):
-        self.assertIn("--server", self.expect(USAGE, "sensors", NO_SUCH_JOB).stderr)
+        self.assertIn("--server", self.expect(USAGE, "sensors", "nowhere").stderr)
 
     def test_each_verb_helps_with_an_example(self):
         for verb in ("submit", "list", "show", "watch", "cancel", "pause", "resume", "checkpoint",

@@ -50,7 +50,7 @@ cancelling -     -        -    -       =       -       =          -
 paused     -     -        -    -       =       queued  cancelled  -
 completed  -     -        -    -       -       +       -          -
 failed     -     -        -    -       -       +       -          -
-cancelled  -     -        -    -       -       +       =          -
+cancelled  -     -        -    -       -       queued  =          -
 )";
 constexpr std::string_view kOfAttempts = R"(
            claim complete  fail   requeue   pause     resume cancel    release

@@ -1,0 +1,96 @@
+#include "cli/run_end.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/shell_word.hpp"
+#include "engine/store/file_system.hpp"
+#include "engine/study/report.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kLargestOutcome = 1 << 20;
+
+/// What it says of a run that was complete before, whose account is that of the attempt that
+/// completed it.
+std::string complete_text(const JobFolder& folder, const std::string& earlier) {
+  const Json outcome = Json::parse(earlier);
+  const Json& attempt = outcome.at("this_attempt");
+  return fmt::format(
+      "{} is complete already: step {}, t = {:.6g} s; nothing was run\n"
+      "  its last attempt: {} steps in {:.2f} s, {} threads, {}\n",
+      folder.name().string(), outcome.value("step", std::uint64_t{0}), outcome.value("time", 0.0),
+      attempt.value("steps", std::uint64_t{0}), attempt.value("seconds", 0.0),
+      outcome.value("threads", 1), outcome.value("simd_target", ""));
+}
+
+}  // namespace
+
+std::string completed_outcome(const JobFolder& folder, const Scene& scene) {
+  try {
+    std::string text = read_text(folder.paths().outcome(), kLargestOutcome);
+    const Json outcome = Json::parse(text);
+    const bool reached = outcome.at("state") == "completed" &&
+                         outcome.at("end_time").get<double>() == scene.end_time;
+    return reached ? text : "";
+  } catch (const std::exception&) {
+    return {};  // Then the run says itself how far it is.
+  }
+}
+
+std::string closing_text(JobFolder& folder, const Outcome& outcome, const std::string& earlier) {
+  const bool nothing_done = outcome.exit_code == ExitCode::done && outcome.account.steps == 0;
+  if (!nothing_done || earlier.empty()) return summary_text(outcome);
+  try {
+    const std::string text = complete_text(folder, earlier);
+    folder.publish_text(folder.paths().outcome(), earlier);
+    return text;
+  } catch (const std::exception&) {  // a full disk, or an outcome of another form
+    return summary_text(outcome);
+  }
+}
+
+std::string next_commands(const JobFolder& folder, const Scene& scene, const Outcome& outcome) {
+  if (!folder.is_held()) return {};
+  const fs::path root = folder.name();
+  std::string text;
+  // A numerical failure would only come again.
+  const bool can_go_on =
+      outcome.exit_code == ExitCode::checkpointed || outcome.exit_code == ExitCode::storage_failure;
+  if (can_go_on) text += fmt::format("  to go on:   sluice run {}\n", shell_path(root));
+  const auto checkpoints = folder.paths().checkpoints();
+  if (!checkpoints.empty()) {
+    text += fmt::format("  to look in: sluice inspect {}\n",
+                        shell_path(root / checkpoints.front().filename()));
+  }
+  for (const Sensor& sensor : scene.sensors) {
+    if (sensor.kind != SensorKind::pressure) continue;
+    return text + fmt::format("  to plot:    sluice sensors {} {} --filter gaussian --tau 0.002\n",
+                              shell_path(root), shell_word(sensor.name));
+  }
+  return text;
+}
+
+void leave_report(const JobFolder& folder, const Outcome& outcome) {
+  if (outcome.exit_code != ExitCode::done) return;
+  try {
+    folder.require_held();
+    publish_report(folder.paths().root(), folder.paths().root());
+  } catch (const std::exception& error) {
+    std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n", error.what(),
+                           shell_path(folder.name()))
+                   .c_str(),
+               stderr);
+  }
+}
+
+}  // namespace sluice
