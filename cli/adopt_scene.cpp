@@ -47,7 +47,7 @@ std::string differences(const Scene& there, const Scene& here) {
 
 void adopt_scene(JobFolder& folder, const std::string& text, const Scene& scene) {
   const std::filesystem::path path = folder.paths().scene();
-  const Scene present = parse_scene_or_end(folder.scene_text(), path, StabilityCheck::skip);
+  const Scene present = job_scene_or_end(folder.scene_text(), path);
   if (identity_text(present) != identity_text(scene)) {
     throw CommandEnd(ExitCode::invalid_scene,
                      fmt::format("{} holds a run of another scene: {}; choose another folder with "

@@ -23,8 +23,7 @@ JobData::JobData(const std::filesystem::path& folder) : paths_(folder) {
 }
 
 Scene JobData::scene() const {
-  return parse_scene_or_end(read_text(paths_.scene(), kMaxSceneBytes + 1), paths_.scene(),
-                            StabilityCheck::skip);
+  return job_scene_or_end(read_text(paths_.scene(), kMaxSceneBytes + 1), paths_.scene());
 }
 
 std::vector<Series> JobData::series() const {

@@ -55,8 +55,7 @@ struct OpenedJob {
 
 OpenedJob open_job(const fs::path& root) {
   JobFolder folder = JobFolder::open(root);
-  Scene scene =
-      parse_scene_or_end(folder.scene_text(), folder.paths().scene(), StabilityCheck::skip);
+  Scene scene = job_scene_or_end(folder.scene_text(), folder.paths().scene());
   return {std::move(folder), std::move(scene)};
 }
 

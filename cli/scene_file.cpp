@@ -29,20 +29,8 @@ std::string read_stdin(std::size_t limit) {
   return text;
 }
 
-}  // namespace
-
-std::string read_scene_bytes(const std::filesystem::path& path) {
-  std::string text = path == "-" ? read_stdin(kMaxSceneBytes + 1) : read_scene_text(path);
-  if (text.size() <= kMaxSceneBytes) return text;
-  throw CommandEnd(ExitCode::invalid_scene,
-                   fmt::format("{} is longer than {} KiB, the most that a scene may have",
-                               path == "-" ? "stdin" : path.string(), kMaxSceneBytes >> 10U));
-}
-
-Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where,
-                         StabilityCheck stability) {
-  ParseResult result = parse_scene(text, stability);
-  if (result.scene) return *std::move(result.scene);
+void require_scene(const ParseResult& result, const std::filesystem::path& where) {
+  if (result.scene) return;
   for (const Problem& problem : result.problems) {
     fmt::print(stderr, "{}: {}: {}\n", where.string(),
                problem.pointer.empty() ? "(the whole scene)" : problem.pointer, problem.message);
@@ -53,11 +41,35 @@ Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& whe
                                count == 1 ? "" : "s"));
 }
 
+}  // namespace
+
+std::string read_scene_bytes(const std::filesystem::path& path) {
+  std::string text = path == "-" ? read_stdin(kMaxSceneBytes + 1) : read_scene_text(path);
+  if (text.size() <= kMaxSceneBytes) return text;
+  throw CommandEnd(ExitCode::invalid_scene,
+                   fmt::format("{} is longer than {} KiB, the most that a scene may have",
+                               path == "-" ? "stdin" : path.string(), kMaxSceneBytes >> 10U));
+}
+
+Scene job_scene_or_end(std::string_view text, const std::filesystem::path& where) {
+  ParseResult result = parse_job_scene(text);
+  require_scene(result, where);
+  return *std::move(result.scene);
+}
+
 SceneFile read_scene(const std::filesystem::path& path) {
-  SceneFile file;
-  file.text = read_scene_bytes(path);
-  file.scene = parse_scene_or_end(file.text, path == "-" ? "stdin" : path, StabilityCheck::refuse);
-  return file;
+  const std::string text = read_scene_bytes(path);
+  ParseResult result = parse_scene(text);
+  require_scene(result, path == "-" ? "stdin" : path);
+  return {text_for_folder(text), *std::move(result.scene), std::move(result.warnings)};
+}
+
+std::string warnings_text(const std::vector<Problem>& warnings, const std::string& where) {
+  std::string text;
+  for (const Problem& warning : warnings) {
+    text += fmt::format("{}: warning: {}: {}\n", where, warning.pointer, warning.message);
+  }
+  return text;
 }
 
 }  // namespace sluice

@@ -3,16 +3,18 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/scene/parse.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace sluice {
 
-/// A scene with the text it came from.
+/// A scene with its text as a job's folder keeps it (text_for_folder).
 struct SceneFile {
   std::string text;
   Scene scene;
+  std::vector<Problem> warnings;
 };
 
 /// A scene's text as it is, "-" from stdin. Throws CommandEnd: usage when it cannot be read,
@@ -23,9 +25,11 @@ struct SceneFile {
 /// JSON pointer, and throws CommandEnd(invalid_scene) when there are any.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& path);
 
-/// The same for a text that stands in `where`. What stands in a job's folder was checked when the
-/// folder was made: StabilityCheck::skip there, so that no job becomes unreadable.
-[[nodiscard]] Scene parse_scene_or_end(std::string_view text, const std::filesystem::path& where,
-                                       StabilityCheck stability);
+/// The same for the scene in a job's folder.
+[[nodiscard]] Scene job_scene_or_end(std::string_view text, const std::filesystem::path& where);
+
+/// "FILE: warning: /pointer: message", one line each.
+[[nodiscard]] std::string warnings_text(const std::vector<Problem>& warnings,
+                                        const std::string& where);
 
 }  // namespace sluice

@@ -9,8 +9,6 @@
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/progress.hpp"
-#include "engine/run/simulation.hpp"
-#include "engine/run/stopwatch.hpp"
 #include "engine/scene/estimate.hpp"
 #include "engine/scene/initial.hpp"
 #include "engine/scene/parse.hpp"
@@ -23,9 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Above this many particles no trial is made: filling the scene alone would take long.
+/// Above this many particles none is made: filling the scene alone would take long.
 constexpr std::uint64_t kTrialParticles = 5'000'000;
-constexpr double kTrialSeconds = 0.5;
 
 struct SceneArguments {
   std::string scene;
@@ -35,29 +32,19 @@ struct SceneArguments {
   std::string simd;
 };
 
-/// What a short trial on this machine showed.
-struct Calibration {
-  double seconds_per_step = 0.0;
+/// What a run takes on this machine.
+struct Cost {
+  double seconds = 0.0;
   double particle_steps_per_second = 0.0;
-  double time_step = 0.0;  ///< of the trial's last step, s
   int threads = 1;
 };
 
-/// Steps the scene itself for about half a second; the first step is left out, because it sorts
-/// and allocates.
-Calibration calibrate(const Scene& scene, const Execution& execution) {
-  Simulation simulation(scene, execution);
-  simulation.step();
-  const std::uint64_t first = simulation.solver().step_count();
-  const std::uint64_t before = simulation.particle_steps();
-  const Stopwatch clock;
-  do {
-    simulation.step();
-  } while (clock.seconds() < kTrialSeconds && !simulation.finished());
-  const double seconds = clock.seconds();
-  const auto steps = static_cast<double>(simulation.solver().step_count() - first);
-  return {seconds / steps, static_cast<double>(simulation.particle_steps() - before) / seconds,
-          simulation.solver().time_step(), simulation.solver().threads()};
+Cost cost_of(const Scene& scene, const Estimate& needs, const SceneArguments& arguments) {
+  const int threads = arguments.threads > 0 ? arguments.threads : default_threads(scene);
+  const double seconds = expected_core_seconds(scene, needs, arguments.simd) / threads;
+  const double particle_steps =
+      static_cast<double>(needs.fluid_particles) * static_cast<double>(needs.steps);
+  return {seconds, particle_steps / seconds, threads};
 }
 
 std::string size_text(std::uint64_t bytes) {
@@ -74,7 +61,8 @@ void print_items(std::string_view title, const std::vector<PlanItem>& items) {
 }
 
 void print_plan(const Plan& plan, const Estimate& estimate, const StabilityPrediction& outlook,
-                const std::optional<Calibration>& trial) {
+                const std::optional<Cost>& cost) {
+  print_items("numerics", plan.numerics);
   print_items("passes and terms that run", plan.passes);
   print_items("left out", plan.passes_left_out);
   print_items("fields", plan.fields);
@@ -86,50 +74,63 @@ void print_plan(const Plan& plan, const Estimate& estimate, const StabilityPredi
   fmt::print("  {} of memory, {} on disk, {} samples, {} frames\n",
              size_text(estimate.memory_bytes), size_text(estimate.disk_bytes), estimate.samples,
              estimate.frames);
+  if (cost) {
+    fmt::print(
+        "  {} on {} thread{} of an otherwise idle machine ({:.1f} million particle steps per "
+        "second)\n",
+        duration_text(cost->seconds), cost->threads, cost->threads == 1 ? "" : "s",
+        cost->particle_steps_per_second * 1e-6);
+  }
   fmt::print("stability\n  {}\n", stability_text(outlook));
-  if (!trial) return;
-  fmt::print(
-      "  {} on {} threads, from a trial of {} s ({:.1f} million particle steps per second)\n",
-      duration_text(trial->seconds_per_step * static_cast<double>(estimate.steps)), trial->threads,
-      kTrialSeconds, trial->particle_steps_per_second * 1e-6);
+}
+
+Json list_of(const std::vector<Problem>& problems) {
+  Json list = Json::array();
+  for (const Problem& problem : problems) {
+    list.push_back(Json{{"pointer", problem.pointer}, {"message", problem.message}});
+  }
+  return list;
 }
 
 void print_plan_json(const Plan& plan, const Estimate& estimate, const StabilityPrediction& outlook,
-                     const std::optional<Calibration>& trial) {
+                     const std::optional<Cost>& cost, const std::vector<Problem>& warnings) {
   Json object{{"plan", Json::parse(plan_json(plan))},
               {"estimate", Json::parse(estimate_json(estimate))},
-              {"stability", Json::parse(stability_json(outlook))}};
+              {"stability", Json::parse(stability_json(outlook))},
+              {"warnings", list_of(warnings)}};
   object["calibration"] = nullptr;
-  if (trial) {
+  if (cost) {
     object["calibration"] =
-        Json{{"seconds", trial->seconds_per_step * static_cast<double>(estimate.steps)},
-             {"seconds_per_step", trial->seconds_per_step},
-             {"particle_steps_per_second", trial->particle_steps_per_second},
-             {"time_step", trial->time_step},
-             {"threads", trial->threads}};
+        Json{{"seconds", cost->seconds},
+             {"seconds_per_step", cost->seconds / static_cast<double>(estimate.steps)},
+             {"particle_steps_per_second", cost->particle_steps_per_second},
+             {"time_step", estimate.time_step},
+             {"threads", cost->threads}};
   }
   fmt::print("{}\n", object.dump(2));
 }
 
-void show_plan(const SceneArguments& arguments) {
-  const Scene scene = read_scene(arguments.scene).scene;
-  const Estimate needs = estimate(scene);
-  const bool small = needs.fluid_particles + needs.wall_particles <= kTrialParticles;
-  std::optional<Calibration> trial;
-  if (!arguments.no_calibration && small) {
-    const int threads = arguments.threads > 0 ? arguments.threads : default_threads(scene);
-    try {
-      trial = calibrate(scene, {threads, arguments.simd});
-    } catch (const NumericalFailure& failure) {
-      throw CommandEnd(ExitCode::numerical_failure,
-                       fmt::format("the trial failed: {}", failure.what()));
-    }
-  }
-  (arguments.json ? print_plan_json : print_plan)(plan(scene), needs, predict_stability(scene),
-                                                  trial);
+/// With the particles counted as they are made, unless that would take long. Throws SceneError for
+/// what shows only when a scene is filled: regions that overlap.
+Estimate estimate_of(const Scene& scene) {
+  const Estimate rough = estimate(scene);
+  const bool small = rough.fluid_particles + rough.wall_particles <= kTrialParticles;
+  return small ? estimate(scene, create_particles(scene)) : rough;
 }
 
-/// All problems as JSON on stdout: for editors and scripts.
+void show_plan(const SceneArguments& arguments) {
+  const SceneFile file = read_scene(arguments.scene);
+  const Scene& scene = file.scene;
+  const Estimate needs = estimate_of(scene);
+  std::optional<Cost> cost;
+  if (!arguments.no_calibration) cost = cost_of(scene, needs, arguments);
+  const StabilityPrediction outlook = predict_stability(scene);
+  if (arguments.json) return print_plan_json(plan(scene), needs, outlook, cost, file.warnings);
+  print_plan(plan(scene), needs, outlook, cost);
+  fmt::print("{}", warnings_text(file.warnings, arguments.scene));
+}
+
+/// All problems and warnings as JSON on stdout: for editors and scripts.
 void validate_as_json(const std::string& path) {
   ParseResult result = parse_scene(read_scene_bytes(path));
   if (result.scene && estimate(*result.scene).fluid_particles <= kTrialParticles) {
@@ -137,21 +138,18 @@ void validate_as_json(const std::string& path) {
       result.problems.push_back(*std::move(problem));
     }
   }
-  Json problems = Json::array();
-  for (const Problem& problem : result.problems) {
-    problems.push_back(Json{{"pointer", problem.pointer}, {"message", problem.message}});
-  }
-  const Json report{{"valid", result.problems.empty()}, {"problems", problems}};
+  const Json report{{"valid", result.problems.empty()},
+                    {"problems", list_of(result.problems)},
+                    {"warnings", list_of(result.warnings)}};
   fmt::print("{}\n", report.dump(2));
   if (!result.problems.empty()) throw CommandEnd(ExitCode::invalid_scene);
 }
 
 void validate(const SceneArguments& arguments) {
   if (arguments.json) return validate_as_json(arguments.scene);
-  const Scene scene = read_scene(arguments.scene).scene;
-  const Estimate needs = estimate(scene);
-  // Regions that overlap show only when they are filled.
-  if (needs.fluid_particles <= kTrialParticles) (void)create_particles(scene);
+  const SceneFile file = read_scene(arguments.scene);
+  const Estimate needs = estimate_of(file.scene);
+  fmt::print("{}", warnings_text(file.warnings, arguments.scene));
   fmt::print("{} is a valid scene: {} fluid and {} wall particles\n", arguments.scene,
              needs.fluid_particles, needs.wall_particles);
 }
@@ -176,10 +174,9 @@ void add_validate(CLI::App& app) {
 
 void add_plan(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "plan",
-      "Show what a scene runs and leaves out, and what it takes; steps it for half a second");
+      "plan", "Show what a scene runs and leaves out, and what it takes on this machine");
   const auto arguments = add_scene_options(*verb);
-  verb->add_flag("--no-calibration", arguments->no_calibration, "Do not step the scene");
+  verb->add_flag("--no-calibration", arguments->no_calibration, "Do not measure the machine");
   add_execution_options(*verb, arguments->threads, arguments->simd);
   verb->footer("Example: sluice plan my-scene.json --threads 2");
   verb->callback([arguments] { show_plan(*arguments); });

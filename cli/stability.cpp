@@ -12,6 +12,7 @@
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/signals.hpp"
+#include "engine/scene/canonical.hpp"
 #include "engine/scene/problems.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/study/elliptical_drop.hpp"
@@ -85,7 +86,7 @@ std::vector<StabilityCase> chosen(const std::vector<std::string>& names) {
 nlohmann::ordered_json chosen_scheme(const std::string& name) {
   if (name == "recommended") return recommended_scheme();
   if (name == "paper") return paper_scheme();
-  return scheme_of(nlohmann::ordered_json::parse(read_scene(name).text));
+  return scheme_of(nlohmann::ordered_json::parse(canonical_text(read_scene(name).scene)));
 }
 
 void write_if_asked(const fs::path& path, const std::string& text) {

@@ -63,11 +63,19 @@ void print_names(std::string_view title, const Json& items) {
   if (!names.empty()) fmt::print("  {}: {}\n", title, names);
 }
 
+void print_warnings(const std::string& subject, const Json& answer) {
+  for (const Json& warning : member(answer, "warnings")) {
+    fmt::print("{}: warning: {}: {}\n", subject, text_at(warning, "pointer"),
+               text_at(warning, "detail"));
+  }
+}
+
 void print_dry_run(const std::string& subject, const Json& answer) {
   fmt::print("{} would be taken\n{}", subject, estimate_text(member(answer, "estimate")));
   const Json& plan = member(answer, "plan");
   print_names("runs", member(plan, "passes"));
   print_names("left out", member(plan, "passes_left_out"));
+  print_warnings(subject, answer);
 }
 
 /// The first sensor of pressure of the scene, which the service found valid.
@@ -82,13 +90,14 @@ std::string sensor_to_show(const std::string& scene) {
 }
 
 void print_submitted(const ServiceClient& service, const HttpReply& reply, const Json& job,
-                     const std::string& scene) {
+                     const std::string& subject, const std::string& scene) {
   const std::string id = text_at(job, "id");
   const bool repeated = reply.header("idempotency-replayed") == "true";
   const std::string waiting = text_at(job, "waiting");
   fmt::print("{} {}{}{}\n", id, state_text(job), waiting.empty() ? "" : ": " + waiting,
              repeated ? " (submitted before, with the same key)" : "");
   fmt::print("{}", estimate_text(member(job, "estimate")));
+  print_warnings(subject, job);
   fmt::print("  to watch:   {}\n", service.command("watch " + id));
   fmt::print("  to look in: {}\n",
              service.command(fmt::format("sensors {}{}", id, sensor_to_show(scene))));
@@ -112,7 +121,7 @@ void submit(const SubmitArguments& arguments) {
   } else if (arguments.dry_run) {
     print_dry_run(subject, answer);
   } else {
-    print_submitted(service, reply, answer, request.body);
+    print_submitted(service, reply, answer, subject, request.body);
   }
   if (!arguments.watch) return;
   WatchOptions watching = arguments.watching;

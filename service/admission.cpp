@@ -17,20 +17,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Fluid-particle steps per second and core that the estimate of the time goes by.
-constexpr double kParticleStepsPerSecond = 15e6;
-
-/// Regions that overlap show only when they are filled. Larger scenes are left to the worker, which
-/// does it in its own memory.
+/// Regions that overlap, and how many particles there are exactly, show only when they are filled.
+/// Larger scenes are left to the worker, which does it in its own memory.
 constexpr std::uint64_t kTrialParticles = 100'000;
 
 [[noreturn]] void refuse_scene(const std::vector<Problem>& problems) {
   refuse(ProblemType::invalid_scene, "the whole scene", problems);
 }
 
-void check_overlap(const Scene& scene, const Estimate& estimate) {
-  if (estimate.fluid_particles + estimate.wall_particles > kTrialParticles) return;
-  if (const auto problem = problem_when_filled(scene)) refuse_scene({*problem});
+void fill(Admitted& admitted) {
+  Estimate& size = admitted.estimate;
+  if (size.fluid_particles + size.wall_particles > kTrialParticles) return;
+  try {
+    size = estimate(admitted.scene, create_particles(admitted.scene));
+  } catch (const SceneError& error) {
+    refuse_scene({error.problem()});
+  }
 }
 
 void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
@@ -44,29 +46,48 @@ void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
                  {{"errors", errors}});
 }
 
-}  // namespace
-
-Admitted admit_scene(std::string_view text, const ServiceLimits& limits) {
-  ParseResult result = parse_scene(text);
+Admitted admit(ParseResult result, const ServiceLimits& limits) {
   if (!result.scene) refuse_scene(result.problems);
-  Admitted admitted{*std::move(result.scene), {}};
+  Admitted admitted{*std::move(result.scene), {}, {}, std::move(result.warnings)};
   admitted.estimate = estimate(admitted.scene);
   check_limits(admitted.estimate, limits);
-  check_overlap(admitted.scene, admitted.estimate);
+  fill(admitted);
+  return admitted;
+}
+
+}  // namespace
+
+Admitted admit_scene(const std::string& text, const ServiceLimits& limits) {
+  Admitted admitted = admit(parse_scene(text), limits);
+  try {
+    admitted.text = text_for_folder(text);
+  } catch (const SceneError& error) {
+    refuse_scene({error.problem()});
+  }
+  return admitted;
+}
+
+Admitted admit_job_scene(const std::string& text, const ServiceLimits& limits) {
+  Admitted admitted = admit(parse_scene(text, StabilityCheck::refuse, SceneOrigin::job), limits);
+  admitted.text = text;
   return admitted;
 }
 
 void refuse(ProblemType type, std::string_view whole, const std::vector<Problem>& problems) {
-  Json errors = Json::array();
-  for (const Problem& problem : problems) {
-    errors.push_back({{"pointer", problem.pointer}, {"detail", problem.message}});
-  }
   const Problem& first = problems.front();
   throw ApiError(
       type,
       fmt::format("{} problem{}; first, {}: {}", problems.size(), problems.size() == 1 ? "" : "s",
                   first.pointer.empty() ? whole : first.pointer, first.message),
-      {{"errors", std::move(errors)}});
+      {{"errors", problem_list(problems)}});
+}
+
+Json problem_list(const std::vector<Problem>& problems) {
+  Json list = Json::array();
+  for (const Problem& problem : problems) {
+    list.push_back({{"pointer", problem.pointer}, {"detail", problem.message}});
+  }
+  return list;
 }
 
 Json broken_limits(const Estimate& estimate, const ServiceLimits& limits) {
@@ -83,9 +104,7 @@ Json broken_limits(const Estimate& estimate, const ServiceLimits& limits) {
 
 Json estimate_document(const Scene& scene, const Estimate& estimate, int threads) {
   Json document = Json::parse(estimate_json(estimate));
-  const double particle_steps =
-      static_cast<double>(estimate.fluid_particles) * static_cast<double>(estimate.steps);
-  document["seconds"] = particle_steps / (kParticleStepsPerSecond * std::max(threads, 1));
+  document["seconds"] = expected_core_seconds(scene, estimate) / std::max(threads, 1);
   document["stability"] = Json::parse(stability_json(predict_stability(scene)));
   return document;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,11 +19,19 @@ namespace sluice {
 struct Admitted {
   Scene scene;
   Estimate estimate;
+  std::string text;  ///< as the job's folder keeps it
+  std::vector<Problem> warnings;
 };
 
 /// Parses a scene and holds it against the limits. Throws ApiError: invalid_scene with every
 /// problem as {pointer, detail}, over_limit with every limit that it breaks.
-[[nodiscard]] Admitted admit_scene(std::string_view text, const ServiceLimits& limits);
+[[nodiscard]] Admitted admit_scene(const std::string& text, const ServiceLimits& limits);
+
+/// The same for the scene of a job that was taken before and is to end later.
+[[nodiscard]] Admitted admit_job_scene(const std::string& text, const ServiceLimits& limits);
+
+/// As an array of {pointer, detail}.
+[[nodiscard]] nlohmann::ordered_json problem_list(const std::vector<Problem>& problems);
 
 /// Throws ApiError of this type with every problem as {pointer, detail}; there is at least one.
 /// `whole` is what an empty pointer points to, such as "the whole scene".

@@ -86,7 +86,7 @@ Extension replace_end_time(const ApiContext& context, Job job, double end_time) 
   JobFolder folder = JobFolder::open(context.paths(job.id).root());
   std::string before = folder.scene_text();
   const std::string extended = extended_scene(before, end_time);
-  const Admitted admitted = admit_scene(extended, context.scheduler.limits());
+  const Admitted admitted = admit_job_scene(extended, context.scheduler.limits());
   describe_scene(job, admitted.scene, admitted.estimate);
   folder.publish_text(folder.paths().scene(), extended);
   return {std::move(before), std::move(job.estimate)};

@@ -24,8 +24,7 @@ enum class Format { json, csv };
 
 Scene scene_of(const ApiContext& context, const Job& job) {
   const JobPaths paths = context.paths(job.id);
-  ParseResult result =
-      parse_scene(read_text(paths.scene(), kMaxSceneBytes + 1), StabilityCheck::skip);
+  ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
   if (result.scene) return *std::move(result.scene);
   throw ApiError(ProblemType::internal,
                  fmt::format("the scene in the folder of job {} was altered", job.id));

@@ -45,8 +45,12 @@ std::string hash_of(const Request& request, const JobOptions& options) {
       request, fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads));
 }
 
-Response accepted(const ApiContext& context, const Job& job, bool repeated) {
-  return accepted_response(fmt::format("/v1/jobs/{}", job.id), document_of(context, job), repeated);
+/// The job, and what may not have been meant in its scene.
+Response accepted(const ApiContext& context, const Job& job, bool repeated,
+                  const std::vector<Problem>& warnings) {
+  Json document = document_of(context, job);
+  document["warnings"] = problem_list(warnings);
+  return accepted_response(fmt::format("/v1/jobs/{}", job.id), document, repeated);
 }
 
 Job new_job(ApiContext& context, const Admitted& admitted, const JobOptions& options) {
@@ -67,19 +71,20 @@ Response make_job(ApiContext& context, const Request& request, const JobOptions&
   const Job job = new_job(context, admitted, options);
   // The folder comes first: a row without its folder could not run, a folder without its row is
   // found at the next start.
-  NewFolder folder(context.paths(job.id), request.body,
+  NewFolder folder(context.paths(job.id), admitted.text,
                    {job.label, job.priority, job.threads, job.created_ms, options.key, hash, {}});
   const auto submitted = context.store.submit(job, options.key, hash, limits.queued_jobs);
   if (!submitted.repeated) folder.keep();
   context.scheduler.poke();
-  return accepted(context, submitted.job, submitted.repeated);
+  return accepted(context, submitted.job, submitted.repeated, admitted.warnings);
 }
 
 Response show_plan(const ApiContext& context, const Request& request, const JobOptions& options) {
   const Admitted admitted = admit_scene(request.body, context.scheduler.limits());
   return json_response(
       200, {{"plan", Json::parse(plan_json(plan(admitted.scene)))},
-            {"estimate", estimate_document(admitted.scene, admitted.estimate, options.threads)}});
+            {"estimate", estimate_document(admitted.scene, admitted.estimate, options.threads)},
+            {"warnings", problem_list(admitted.warnings)}});
 }
 
 }  // namespace
@@ -92,7 +97,7 @@ Response submit_job(ApiContext& context, const RouteRequest& request) {
 
   const std::scoped_lock one_at_a_time(context.keyed_submits);
   if (const auto known = context.store.find_by_key(options.key, hash_of(request.http, options))) {
-    return accepted(context, *known, true);
+    return accepted(context, *known, true, parse_scene(request.http.body).warnings);
   }
   return make_job(context, request.http, options);
 }

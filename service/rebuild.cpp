@@ -88,8 +88,7 @@ std::optional<JobFile> read_file(const JobPaths& paths, const RebuildReport& rep
 }
 
 Scene read_scene(const JobPaths& paths) {
-  const ParseResult result =
-      parse_scene(read_text(paths.scene(), kMaxSceneBytes + 1), StabilityCheck::skip);
+  const ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
   if (!result.scene) {
     const Problem& problem = result.problems.front();
     throw std::runtime_error(

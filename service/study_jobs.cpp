@@ -117,7 +117,8 @@ void make_study_jobs(ApiContext& context, const StudyRecord& study, const StudyP
 void finish_studies(ApiContext& context) {
   for (const StudyRecord& study : context.studies.unfinished()) {
     try {
-      const StudyPlan plan = plan_study(context.studies.document(study.id), nullptr, nullptr);
+      const StudyPlan plan = plan_study(context.studies.document(study.id), nullptr, nullptr,
+                                        kMaxStudyRuns, SceneOrigin::study);
       make_study_jobs(context, study, plan);
     } catch (const std::exception& error) {
       // The study stays as it is, and the next start tries again.

@@ -120,7 +120,8 @@ void add_jobs(Json& runs, const StudyView& view) {
 }  // namespace
 
 StudyView view_study(const ApiContext& context, const StudyRecord& record) {
-  StudyPlan plan = plan_study(context.studies.document(record.id), nullptr, nullptr);
+  StudyPlan plan = plan_study(context.studies.document(record.id), nullptr, nullptr, kMaxStudyRuns,
+                              SceneOrigin::study);
   auto jobs = jobs_of_study(context.store, record);
   StudyView view{record, {}, {}};
   std::vector<StudyRow> rows;

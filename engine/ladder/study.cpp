@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "engine/scene/json_text.hpp"
+#include "engine/scene/numerics_json.hpp"
 #include "engine/scene/reader.hpp"
 #include "engine/scene/schema_writer.hpp"
 
@@ -25,7 +26,7 @@ void describe(Archive& a, StudyCase& one) {
         {"object", "string"});
   a.any("set", one.set,
         {.about = "what it changes in its base scene: JSON pointers and their new values, such as "
-                  "\"/numerics/courant\": 1; null leaves a key out"},
+                  "\"/numerics/courant\": 1; null leaves a key out, or a term that the scheme has"},
         {"object"});
 }
 
@@ -105,7 +106,7 @@ std::string plain_name(const std::string& text) {
 void apply(json& scene, const std::string& key, const json& value) {
   const json::json_pointer place(key);
   if (place.empty()) throw std::invalid_argument("the whole scene cannot be replaced");
-  if (!value.is_null()) {
+  if (!value.is_null() || takes_null(key)) {
     scene[place] = value;
     return;
   }
@@ -119,8 +120,8 @@ void apply(json& scene, const std::string& key, const json& value) {
 class Planner {
  public:
   /// `bases`: the scene of each case.
-  Planner(StudyPlan& plan, Problems& problems, std::vector<json> bases)
-      : plan_(plan), problems_(problems), bases_(std::move(bases)) {}
+  Planner(StudyPlan& plan, Problems& problems, std::vector<json> bases, SceneOrigin origin)
+      : plan_(plan), problems_(problems), bases_(std::move(bases)), origin_(origin) {}
 
   void make_all() {
     std::vector<StudyCase> cases = plan_.study.cases;
@@ -179,8 +180,8 @@ class Planner {
                                     run.name));
     }
     scene["name"] = run.name;
-    run.scene_text = scene.dump(2) + "\n";
-    ParseResult parsed = parse_scene(run.scene_text, StabilityCheck::skip);
+    run.scene_text = text_for_folder(scene.dump(2) + "\n");
+    ParseResult parsed = parse_scene(run.scene_text, StabilityCheck::skip, origin_);
     for (const Problem& problem : parsed.problems) {
       problems_.add("", fmt::format("run {}: {}: {}", run.name, problem.pointer, problem.message));
     }
@@ -192,6 +193,7 @@ class Planner {
   StudyPlan& plan_;
   Problems& problems_;
   std::vector<json> bases_;
+  SceneOrigin origin_;
   std::set<std::string> names_;
 };
 
@@ -256,8 +258,8 @@ std::vector<json> base_scenes(const Study& study, const SceneFiles& files, Probl
 
 }  // namespace
 
-StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context,
-                     std::size_t most) {
+StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context, std::size_t most,
+                     SceneOrigin origin) {
   StudyPlan plan;
   Problems problems;
   if (const auto document = read_json(text, problems)) {
@@ -267,7 +269,7 @@ StudyPlan plan_study(std::string_view text, SceneLoader load, const void* contex
     check_values(plan.study, most, problems);
     if (problems.empty()) {
       std::vector<json> bases = base_scenes(plan.study, {load, context}, problems);
-      if (problems.empty()) Planner(plan, problems, std::move(bases)).make_all();
+      if (problems.empty()) Planner(plan, problems, std::move(bases), origin).make_all();
     }
   }
   plan.problems = problems.take();

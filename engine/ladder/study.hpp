@@ -14,7 +14,8 @@ namespace sluice {
 
 inline constexpr std::size_t kMaxStudyRuns = 1000;
 
-/// A named way to change the base scene: values by JSON pointer, null leaves the key out.
+/// A named way to change the base scene: values by JSON pointer, null leaves the key out; a
+/// term of the method is then left out too where the scheme has it.
 struct StudyCase {
   std::string name;
   nlohmann::json scene;  ///< its own base in place of the study's; null: the study's
@@ -66,11 +67,13 @@ struct StudyPlan {
 using SceneLoader = std::string (*)(const std::string& name, const void* context);
 
 /// Reads a study and makes every run's scene. Nothing is thrown for bad text. Scenes that are
-/// predicted to be unstable are accepted: finding out is what a study is for. `load` may be null:
+/// predicted to be unstable are accepted: finding out is what a study is for. `origin` is that of
+/// the study: user's or one that was taken before. `load` may be null:
 /// then the scene must stand in the study itself. A study of more than `most` runs is refused
 /// before any is made.
 [[nodiscard]] StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context,
-                                   std::size_t most = kMaxStudyRuns);
+                                   std::size_t most = kMaxStudyRuns,
+                                   SceneOrigin origin = SceneOrigin::user);
 
 /// The JSON Schema 2020-12 of a study: schemas/study.schema.json is this text.
 [[nodiscard]] std::string study_schema_text();

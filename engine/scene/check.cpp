@@ -7,8 +7,10 @@
 #include <set>
 
 #include "engine/scene/check_shapes.hpp"
+#include "engine/scene/check_solids.hpp"
 #include "engine/scene/describe.hpp"
 #include "engine/scene/stability.hpp"
+#include "engine/scene/warnings.hpp"
 #include "engine/scene/work.hpp"
 
 namespace sluice {
@@ -152,7 +154,7 @@ void check_shifting(const Scene& scene, Problems& problems) {
   if (!m.shifting || m.integrator == Integrator::kick_drift_kick) return;
   problems.add("/numerics/particle_shifting",
                "stands beside the integrator modified_leap_frog, whose half level it would leave "
-               "behind; remove it or use kick_drift_kick");
+               "behind; remove it or write \"integrator\": \"kick_drift_kick\"");
 }
 
 /// A scheme whose errors fill the flow within the run is refused; slower growth is only told.
@@ -220,7 +222,7 @@ void check_reference(const Document& document, Problems& problems) {
 
 }  // namespace
 
-void check(const Document& document, StabilityCheck stability, Problems& problems) {
+void check(const Document& document, const CheckedAs& as, Problems& problems, Problems& warnings) {
   const Scene& written = document.scene;
   check_polygons(written, problems);
   check_sizes(written, problems);
@@ -244,9 +246,14 @@ void check(const Document& document, StabilityCheck stability, Problems& problem
   if (problems.clean({"/domain"})) check_sensors(scene, problems);
   if (problems.clean({"/material"})) check_work(scene, problems);
   if (problems.clean({"/material", "/end_time", "/resolution"}) &&
-      stability == StabilityCheck::refuse) {
+      as.stability == StabilityCheck::refuse) {
     check_stability(scene, problems);
   }
+  if (as.origin != SceneOrigin::user || !problems.empty()) return;
+  check_solids(scene, problems, warnings);
+  check_sensor_places(scene, warnings);
+  warn_of_growth(scene, warnings);
+  warn_of_short_intervals(scene, warnings);
 }
 
 }  // namespace sluice

@@ -86,7 +86,11 @@ Box domain_of_flight(const Scene& scene) {
 
 }  // namespace
 
-Document::Document() { scene.method.reference_density = kWaterDensity; }
+Document::Document(std::optional<Scheme> scheme) {
+  scene.numerics.scheme = scheme;
+  scene.method = method_of(scheme);
+  scene.method.reference_density = kWaterDensity;
+}
 
 Document::Document(const Scene& from)
     : scene(from),
@@ -94,6 +98,7 @@ Document::Document(const Scene& from)
       sound_speed(from.method.sound_speed),
       smoothing_ratio(ratio_of(from.method.smoothing_length, from.method.spacing)) {
   if (!from.method.gravity.isZero(0.0)) gravity = from.method.gravity;
+  scene.numerics = {};  // every key is there now
 }
 
 double default_smoothing_ratio(KernelKind kernel) {

@@ -15,7 +15,8 @@ struct Document {
   std::optional<double> sound_speed;      ///< m/s
   std::optional<double> smoothing_ratio;  ///< h/dx
 
-  Document();
+  /// With the numerics of this scheme.
+  explicit Document(std::optional<Scheme> scheme = Scheme::recommended);
   /// The document with everything filled in that resolves to `scene`.
   explicit Document(const Scene& scene);
 };

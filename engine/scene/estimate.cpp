@@ -8,6 +8,7 @@
 #include "engine/scene/geometry.hpp"
 #include "engine/scene/walls.hpp"
 #include "engine/scene/work.hpp"
+#include "engine/sph/machine_speed.hpp"
 #include "engine/sph/particles.hpp"
 
 namespace sluice {
@@ -24,8 +25,8 @@ constexpr std::uint64_t kWallBytes = 100;
 // written.
 constexpr std::uint64_t kSampleBytes = 32;
 constexpr std::uint64_t kSampleCopies = 3;
-// Position, velocity, density and id of one particle in a snapshot, bytes.
-constexpr std::uint64_t kFrameBytes = 48;
+// Position, velocity, pressure and id of one particle in a snapshot, bytes.
+constexpr std::uint64_t kFrameBytes = 28;
 constexpr std::uint64_t kCheckpoints = 3;
 
 std::uint64_t checkpoint_bytes_per_particle(Integrator integrator) {
@@ -38,12 +39,10 @@ std::uint64_t checkpoint_bytes_per_particle(Integrator integrator) {
 
 std::uint64_t whole(double value) { return static_cast<std::uint64_t>(std::ceil(value)); }
 
-}  // namespace
-
-Estimate estimate(const Scene& scene) {
+Estimate complete(const Scene& scene, std::uint64_t fluid, std::uint64_t walls) {
   Estimate e;
-  e.fluid_particles = whole(count_fluid_cells(scene));
-  e.wall_particles = whole(count_wall_cells(scene));
+  e.fluid_particles = fluid;
+  e.wall_particles = walls;
   e.time_step = expected_time_step(scene);
   e.steps = whole(scene.end_time / e.time_step);
   e.samples = whole(count_samples(scene));
@@ -57,6 +56,21 @@ Estimate estimate(const Scene& scene) {
                       e.samples * kSampleBytes) +
       e.samples * kSampleBytes + e.frames * e.fluid_particles * kFrameBytes;
   return e;
+}
+
+}  // namespace
+
+Estimate estimate(const Scene& scene) {
+  return complete(scene, whole(count_fluid_cells(scene)), whole(count_wall_cells(scene)));
+}
+
+Estimate estimate(const Scene& scene, const InitialParticles& made) {
+  return complete(scene, made.state.particles.size(), made.walls.size());
+}
+
+double expected_core_seconds(const Scene& scene, const Estimate& estimate, std::string_view simd) {
+  return static_cast<double>(estimate.fluid_particles) * static_cast<double>(estimate.steps) /
+         particle_steps_per_core_second(scene.method, simd);
 }
 
 std::string estimate_json(const Estimate& e) {

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
+#include "engine/scene/initial.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace sluice {
 
-/// What a run of a scene takes, found from areas and lengths: no particle is made.
+/// What a run of a scene takes, found from areas and lengths unless the particles are given.
 struct Estimate {
   std::uint64_t fluid_particles = 0;  ///< exact for rectangles without obstacles
   std::uint64_t wall_particles = 0;   ///< exact without obstacles
@@ -20,6 +22,14 @@ struct Estimate {
 };
 
 [[nodiscard]] Estimate estimate(const Scene& scene);
+
+/// The same with the particles that were made.
+[[nodiscard]] Estimate estimate(const Scene& scene, const InitialParticles& made);
+
+/// Processor time that the run takes on this machine, s: what `plan` and the service go by. The
+/// machine is measured when it is asked for the first time (machine_speed.hpp).
+[[nodiscard]] double expected_core_seconds(const Scene& scene, const Estimate& estimate,
+                                           std::string_view simd = "");
 
 /// The same as a JSON object, keys as the members.
 [[nodiscard]] std::string estimate_json(const Estimate& estimate);

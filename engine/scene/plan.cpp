@@ -2,15 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
+#include "engine/scene/json_text.hpp"
+#include "engine/scene/numerics_json.hpp"
 #include "engine/scene/vocabulary.hpp"
 #include "engine/sph/particles.hpp"
 
 namespace sluice {
 namespace {
+
+/// Whose a key of `numerics` is, written with dots, and its value; or why it has none.
+std::string source_of(std::string_view key, bool has_value, const NumericsSource& source) {
+  std::string pointer = fmt::format("/{}", key);
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  if (source.names(pointer)) {
+    return fmt::format("{} numerics.{}", has_value ? "key" : "null at", key);
+  }
+  if (!source.scheme) return fmt::format("{}key numerics.{}", has_value ? "" : "no ", key);
+  const std::string_view scheme = word_for(kSchemeWords, *source.scheme);
+  const nlohmann::json whole = numerics_json(method_of(source.scheme));
+  const auto of_scheme = whole.find(key.substr(0, key.find('.')));
+  const bool replaced = !has_value && of_scheme != whole.end() && !of_scheme->is_null();
+  return replaced ? fmt::format("scheme {}, but excluded by another key", scheme)
+                  : fmt::format("scheme {}", scheme);
+}
 
 /// Two lists, one of which an item goes to with its reason.
 struct Lists {
@@ -34,6 +53,12 @@ struct Lists {
       leave_out(name, description, fmt::format("no key {}", key));
     }
   }
+  /// A term of the method, named as its key in `numerics`.
+  void term(bool asked, std::string_view name, std::string_view description,
+            const NumericsSource& source) const {
+    (asked ? in : out)
+        .push_back({std::string(name), std::string(description), source_of(name, asked, source)});
+  }
 };
 
 bool has_walls(const Scene& scene) { return scene.tank || !scene.obstacles.empty(); }
@@ -52,31 +77,28 @@ void plan_walls(const Scene& scene, const Lists& passes) {
     return;
   }
   passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
-  passes.either(scene.method.wall_friction.has_value(), "wall_friction", kFriction,
-                "numerics.wall_friction");
-  passes.either(scene.method.wall_drag.has_value(), "wall_drag", kDrag, "numerics.wall_drag");
+  passes.term(scene.method.wall_friction.has_value(), "wall_friction", kFriction, scene.numerics);
+  passes.term(scene.method.wall_drag.has_value(), "wall_drag", kDrag, scene.numerics);
   passes.either(scene.gate.has_value(), "gate", kGate, "gate");
 }
 
 void plan_passes(const Scene& scene, const Lists& passes) {
   const Method& m = scene.method;
-  passes.always("sort", "particles into rows of cells, when one has moved far enough");
+  passes.always("sort", "particles into rows of cells, every so many steps or when one has left");
   passes.always("continuity", "density rate of eq. 4");
   passes.always("momentum", "pressure part of eq. 5");
   const std::string diffusion =
       m.diffusion ? fmt::format("eq. 7, {}, delta {}", word_for(kDiffusionWords, m.diffusion->kind),
                                 m.diffusion->delta)
                   : "eq. 7";
-  passes.either(m.diffusion.has_value(), "density_diffusion", diffusion,
-                "numerics.density_diffusion");
-  passes.either(m.viscosity.has_value(), "artificial_viscosity", "eq. 8 between fluid particles",
-                "numerics.artificial_viscosity");
+  passes.term(m.diffusion.has_value(), "density_diffusion", diffusion, scene.numerics);
+  passes.term(m.viscosity.has_value(), "artificial_viscosity", "eq. 8 between fluid particles",
+              scene.numerics);
   const std::string stress =
       m.physical_viscosity
           ? fmt::format("viscous stress, nu {} m^2/s, no slip at walls", m.physical_viscosity->nu)
           : "viscous stress, no slip at walls";
-  passes.either(m.physical_viscosity.has_value(), "physical_viscosity", stress,
-                "numerics.physical_viscosity");
+  passes.term(m.physical_viscosity.has_value(), "physical_viscosity", stress, scene.numerics);
   plan_walls(scene, passes);
   passes.either(!m.gravity.isZero(0.0), "gravity", "body acceleration of eq. 5", "gravity");
   passes.run("update", "time step of eq. 18 and integration",
@@ -85,13 +107,11 @@ void plan_passes(const Scene& scene, const Lists& passes) {
       m.shifting ? fmt::format("towards where particles lack, A {}, in the sweep of eq. 4",
                                m.shifting->coefficient)
                  : "towards where particles lack";
-  passes.either(m.shifting.has_value(), "particle_shifting", shifting,
-                "numerics.particle_shifting");
+  passes.term(m.shifting.has_value(), "particle_shifting", shifting, scene.numerics);
   const std::string reinitialisation =
       m.reinitialisation ? fmt::format("eq. 10, every {} steps", m.reinitialisation->interval)
                          : "eq. 10";
-  passes.either(m.reinitialisation.has_value(), "reinitialisation", reinitialisation,
-                "numerics.reinitialisation");
+  passes.term(m.reinitialisation.has_value(), "reinitialisation", reinitialisation, scene.numerics);
   passes.either(!scene.sensors.empty(), "sample", fmt::format("{} sensors", scene.sensors.size()),
                 "sensors");
 }
@@ -122,6 +142,18 @@ void plan_files(const Scene& scene, const Lists& files) {
                "scales");
 }
 
+void plan_numerics(const Scene& scene, std::vector<PlanItem>& items) {
+  const nlohmann::json flat = numerics_json(scene.method).flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    std::string key = pointer.substr(1);
+    std::replace(key.begin(), key.end(), '/', '.');
+    const std::string text = value.is_null()     ? "none"
+                             : value.is_string() ? value.get<std::string>()
+                                                 : write_json(value);
+    items.push_back({key, text, source_of(key, !value.is_null(), scene.numerics)});
+  }
+}
+
 nlohmann::ordered_json to_json(const std::vector<PlanItem>& items) {
   auto all = nlohmann::ordered_json::array();
   for (const PlanItem& item : items) {
@@ -135,6 +167,7 @@ nlohmann::ordered_json to_json(const std::vector<PlanItem>& items) {
 
 Plan plan(const Scene& scene) {
   Plan p;
+  plan_numerics(scene, p.numerics);
   plan_passes(scene, {p.passes, p.passes_left_out});
   plan_fields(scene, {p.fields, p.fields_left_out});
   plan_files(scene, {p.files, p.files_left_out});
@@ -142,10 +175,13 @@ Plan plan(const Scene& scene) {
 }
 
 std::string plan_json(const Plan& p) {
-  return nlohmann::ordered_json{
-      {"passes", to_json(p.passes)}, {"passes_left_out", to_json(p.passes_left_out)},
-      {"fields", to_json(p.fields)}, {"fields_left_out", to_json(p.fields_left_out)},
-      {"files", to_json(p.files)},   {"files_left_out", to_json(p.files_left_out)}}
+  return nlohmann::ordered_json{{"numerics", to_json(p.numerics)},
+                                {"passes", to_json(p.passes)},
+                                {"passes_left_out", to_json(p.passes_left_out)},
+                                {"fields", to_json(p.fields)},
+                                {"fields_left_out", to_json(p.fields_left_out)},
+                                {"files", to_json(p.files)},
+                                {"files_left_out", to_json(p.files_left_out)}}
       .dump();
 }
 

@@ -11,11 +11,13 @@ namespace sluice {
 struct PlanItem {
   std::string name;
   std::string description;
-  std::string reason;  ///< "always", the key that asks for it, or "no key numerics.wall_friction"
+  std::string reason;  ///< "always", the key or the scheme that asks for it or leaves it out
 };
 
 /// What runs for a scene, and what its absent keys leave out.
 struct Plan {
+  std::vector<PlanItem> numerics;         ///< each number and word of the method, as
+                                          ///< wall_drag.coefficient, and whose it is
   std::vector<PlanItem> passes;           ///< passes of a step and the terms in their sums
   std::vector<PlanItem> passes_left_out;  ///< not run
   std::vector<PlanItem> fields;           ///< arrays of one number per particle
@@ -26,7 +28,7 @@ struct Plan {
 
 [[nodiscard]] Plan plan(const Scene& scene);
 
-/// The same as a JSON object: six arrays of {name, description, reason}.
+/// The same as a JSON object: seven arrays of {name, description, reason}.
 [[nodiscard]] std::string plan_json(const Plan& plan);
 
 }  // namespace sluice

@@ -43,6 +43,14 @@ class Reader {
     if (const auto value = pick(*found, at(pointer_, key), words)) member = *value;
   }
 
+  template <class Enum, std::size_t n>
+  void word(std::string_view key, const Words<Enum, n>& words, std::optional<Enum>& member,
+            const KeySpec& spec) {
+    const nlohmann::json* found = find(key, spec.need, spec.about);
+    if (found == nullptr) return;
+    if (const auto value = pick(*found, at(pointer_, key), words)) member = *value;
+  }
+
   /// The keys that belong to the word of `key` are described by `more(*this, word)`.
   template <class Enum, std::size_t n, class More>
   void choice(std::string_view key, const Words<Enum, n>& words, Enum /*current*/,
@@ -64,6 +72,19 @@ class Reader {
   template <class T>
   void section(std::string_view key, std::optional<T>& member, const KeySpec& spec) {
     section(key, spec, [&](Reader& child) { describe(child, member.emplace()); });
+  }
+
+  /// A section that null leaves out. What it does not name keeps the member's value.
+  template <class T>
+  void term(std::string_view key, std::optional<T>& member, const KeySpec& spec) {
+    const nlohmann::json* found = find(key, spec.need, spec.about);
+    if (found == nullptr) return;
+    if (found->is_null()) {
+      member.reset();
+      return;
+    }
+    enter(*found, key,
+          [&](Reader& child) { describe(child, member ? *member : member.emplace()); });
   }
 
   template <class T>

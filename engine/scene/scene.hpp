@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/scene/scheme.hpp"
 #include "engine/sph/method.hpp"
 #include "engine/sph/vec.hpp"
 
@@ -141,6 +142,7 @@ struct Scene {
   std::vector<FluidRegion> fluid;
   std::vector<Shape> obstacles;
   Method method;
+  NumericsSource numerics;  ///< where the method's words and terms come from; changes nothing
   std::vector<Sensor> sensors;
   std::optional<Jitter> jitter;
   std::optional<Frames> frames;

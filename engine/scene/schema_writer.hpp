@@ -48,6 +48,13 @@ class SchemaWriter {
     put(key, std::move(property), spec.need);
   }
 
+  template <class Enum, std::size_t n>
+  void word(std::string_view key, const Words<Enum, n>& words, std::optional<Enum>& member,
+            const KeySpec& spec) {
+    Enum value = member.value_or(words.front().value);
+    word(key, words, value, spec);
+  }
+
   /// One branch of a oneOf for each word, told apart by the constant under `key`.
   template <class Enum, std::size_t n, class More>
   void choice(std::string_view key, const Words<Enum, n>& words, Enum /*current*/,
@@ -78,6 +85,20 @@ class SchemaWriter {
       T fresh{};
       describe(child, fresh);
     });
+  }
+
+  /// An object or null; the member's values are the defaults of its keys.
+  template <class T>
+  void term(std::string_view key, std::optional<T>& member, const KeySpec& spec) {
+    SchemaWriter child;
+    T value = member.value_or(T{});
+    describe(child, value);
+    json property = {
+        {"description",
+         about(spec.about, member ? "the scheme's" : "the scheme's, none") + "; null: none"}};
+    property.update(child.schema());
+    property["type"] = {"object", "null"};
+    put(key, std::move(property), spec.need);
   }
 
   template <class T>

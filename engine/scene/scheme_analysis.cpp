@@ -12,7 +12,7 @@ constexpr std::size_t kRadii = 64;
 
 /// All that LatticeStability and courant_limits look at: a term that they learn belongs in here.
 /// The wall law and beta do not: they are of second order for small waves in water at rest.
-struct Scheme {
+struct SchemeNumbers {
   Integrator integrator;
   KernelKind kernel;
   double spacing;                                      // dx/h
@@ -20,7 +20,7 @@ struct Scheme {
   std::optional<double> delta;
   double two_nu;  // of the physical viscosity, which alone makes a scheme depend on c and h
 
-  explicit Scheme(const Method& m)
+  explicit SchemeNumbers(const Method& m)
       : integrator(m.integrator),
         kernel(m.kernel),
         spacing(m.spacing / m.smoothing_length),
@@ -28,11 +28,11 @@ struct Scheme {
     if (m.viscosity) viscosity.emplace(m.viscosity->alpha, m.viscosity->epsilon);
     if (m.diffusion) delta = m.diffusion->delta;
   }
-  friend bool operator==(const Scheme&, const Scheme&) = default;
+  friend bool operator==(const SchemeNumbers&, const SchemeNumbers&) = default;
 };
 
 struct Kept {
-  Scheme scheme;
+  SchemeNumbers scheme;
   std::shared_ptr<const SchemeAnalysis> analysis;
 };
 
@@ -55,7 +55,7 @@ CourantLimits SchemeAnalysis::limits() const {
 std::shared_ptr<const SchemeAnalysis> analyse_scheme(const Method& method) {
   static std::mutex mutex;
   static std::vector<Kept> kept;  // the one used last stands at the end
-  const Scheme scheme(method);
+  const SchemeNumbers scheme(method);
   const std::scoped_lock lock(mutex);
   const auto found = std::ranges::find(kept, scheme, &Kept::scheme);
   if (found != kept.end()) {

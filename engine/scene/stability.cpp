@@ -48,6 +48,22 @@ std::string_view to_string(Outlook outlook) {
   return "";
 }
 
+double disorder_share(const Method& method) {
+  constexpr double kLeast = 0.62;
+  const double ratio = method.smoothing_length / method.spacing;
+  if (method.integrator == Integrator::modified_leap_frog) {
+    return method.kernel == KernelKind::truncated_gaussian && ratio <= 1.0 ? 0.65 : kLeast;
+  }
+  if (method.kernel == KernelKind::truncated_gaussian) return ratio <= 1.0 ? 0.66 : kLeast;
+  return std::lerp(kLeast, 0.74, std::clamp((ratio - 1.2) / 0.3, 0.0, 1.0));
+}
+
+bool is_beyond_flow_limit(const Scene& scene) {
+  const Method& m = scene.method;
+  const double radius = analyse_scheme(m)->spectral_radius(m.courant / disorder_share(m));
+  return radius - 1.0 > LatticeStability::kTolerance;
+}
+
 Outlook stability_outlook(const Scene& scene) {
   return outlook_of(decades(scene, *analyse_scheme(scene.method)));
 }
@@ -59,7 +75,7 @@ StabilityPrediction predict_stability(const Scene& scene) {
   StabilityPrediction p;
   p.courant = m.courant;
   p.courant_limit = limits.scheme;
-  p.flow_limit = kDisorderShare * limits.scheme;
+  p.flow_limit = disorder_share(m) * limits.scheme;
   p.margin = limits.scheme / m.courant - 1.0;
   const double growth = analysis->spectral_radius(m.courant) - 1.0;
   p.growth_per_step = growth > LatticeStability::kTolerance ? growth : 0.0;

@@ -36,6 +36,15 @@ inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
     {"hydrostatic", InitialPressure::hydrostatic, "that of water at rest below the region's top"},
     {"zero", InitialPressure::zero, "none"},
 }};
+inline constexpr Words<Scheme, 2> kSchemeWords{{
+    {"recommended", Scheme::recommended,
+     "wendland_c2, kick_drift_kick at C = 1, fourtakas, alpha 0.02 with beta 0.5, wall_drag, "
+     "clamped "
+     "walls, particle_shifting"},
+    {"paper", Scheme::paper,
+     "truncated_gaussian, modified_leap_frog at C = 0.25, molteni_colagrossi, alpha 0.02, "
+     "extrapolated walls, reinitialisation"},
+}};
 inline constexpr Words<KernelKind, 2> kKernelWords{{
     {"truncated_gaussian", KernelKind::truncated_gaussian, "support 3h"},
     {"wendland_c2", KernelKind::wendland_c2, "support 2h"},

@@ -13,7 +13,8 @@
 namespace sluice {
 
 /// Archive that writes the members that describe() names into a JSON object. Optional members
-/// without a value, empty lists that need not be there and sections without keys are left out.
+/// without a value (but terms), empty lists that need not be there and sections without keys are
+/// left out.
 class Writer {
  public:
   void number(std::string_view key, double& member, const NumberSpec&) { put(key, member); }
@@ -42,6 +43,12 @@ class Writer {
     put(key, word_for(words, member));
   }
 
+  template <class Enum, std::size_t n>
+  void word(std::string_view key, const Words<Enum, n>& words, std::optional<Enum>& member,
+            const KeySpec&) {
+    if (member) put(key, word_for(words, *member));
+  }
+
   template <class Enum, std::size_t n, class More>
   void choice(std::string_view key, const Words<Enum, n>& words, Enum current, std::string_view,
               const More& more) {
@@ -59,6 +66,13 @@ class Writer {
   template <class T>
   void section(std::string_view key, std::optional<T>& member, const KeySpec& spec) {
     if (member) section(key, spec, [&](Writer& child) { describe(child, *member); });
+  }
+
+  /// null where it is left out: a missing one would be the scheme's.
+  template <class T>
+  void term(std::string_view key, std::optional<T>& member, const KeySpec& spec) {
+    section(key, member, spec);
+    if (!member) put(key, nullptr);
   }
 
   template <class T>

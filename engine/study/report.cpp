@@ -146,8 +146,7 @@ nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
 }
 
 Scene read_job_scene(const std::filesystem::path& folder) {
-  ParseResult parsed =
-      parse_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes), StabilityCheck::skip);
+  ParseResult parsed = parse_job_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes));
   if (!parsed.scene) throw SceneError(parsed.problems.front());
   return *std::move(parsed.scene);
 }

@@ -61,7 +61,7 @@ CaseRun StabilityBench::run(const Json& scene, StabilityCheck stability, const P
   CaseRun run;
   const Json whole = scene.contains("numerics") ? scene : with_scheme(scene, scheme_);
   const std::string text = whole.dump(2) + "\n";
-  ParseResult parsed = parse_scene(text, stability);
+  ParseResult parsed = parse_scene(text, stability, SceneOrigin::job);
   if (!parsed.scene) {
     run.problems = std::move(parsed.problems);
     return run;

@@ -72,7 +72,7 @@ CaseResult pulsing_drop(StabilityBench& bench) {
   const Json scene =
       with_scheme(in_space("pulsing-drop", std::move(drop), 1.0 / bench.pick(15, 40), 15.0, end),
                   bench.scheme());
-  const ParseResult parsed = parse_scene(scene.dump());
+  const ParseResult parsed = parse_scene(scene.dump(), StabilityCheck::refuse, SceneOrigin::job);
   CaseRun refused;
   refused.problems = parsed.problems;
   if (!parsed.scene) return result_of(refused, Verdict::stable);

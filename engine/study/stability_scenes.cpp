@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "engine/scene/numerics_json.hpp"
+#include "engine/scene/scheme.hpp"
+
 namespace sluice {
 namespace {
 
@@ -19,29 +22,12 @@ std::string probe_name(std::size_t index) { return "p" + std::to_string(index); 
 
 Json recommended_scheme() {
   return {{"resolution", {{"smoothing_ratio", 1.5}}},
-          {"numerics",
-           {{"kernel", "wendland_c2"},
-            {"integrator", "kick_drift_kick"},
-            {"courant", 1.0},
-            {"precision", "mixed"},
-            {"density_diffusion", {{"kind", "fourtakas"}, {"delta", 0.1}}},
-            {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}, {"beta", 0.5}}},
-            {"wall_drag", {{"coefficient", 0.01}}},
-            {"wall_pressure", "clamped"},
-            {"particle_shifting", {{"coefficient", 2}}}}}};
+          {"numerics", numerics_json(method_of(Scheme::recommended))}};
 }
 
 Json paper_scheme() {
   return {{"resolution", {{"smoothing_ratio", 1.0}}},
-          {"numerics",
-           {{"kernel", "truncated_gaussian"},
-            {"integrator", "modified_leap_frog"},
-            {"courant", 0.25},
-            {"precision", "mixed"},
-            {"density_diffusion", {{"kind", "molteni_colagrossi"}, {"delta", 0.1}}},
-            {"artificial_viscosity", {{"alpha", 0.02}, {"epsilon", 0.01}}},
-            {"wall_pressure", "extrapolated"},
-            {"reinitialisation", {{"interval", 20}}}}}};
+          {"numerics", numerics_json(method_of(Scheme::paper))}};
 }
 
 Json scheme_of(const Json& scene) {

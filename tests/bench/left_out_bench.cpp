@@ -21,6 +21,7 @@ constexpr const char* kPaper = R"json({
   "material": {"density": 1000, "sound_speed": 24.26},
   "resolution": {"spacing": 0.003},
   "numerics": {
+    "scheme": "paper",
     "integrator": "modified_leap_frog",
     "courant": 0.25,
     "density_diffusion": {"delta": 0.1},

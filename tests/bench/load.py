@@ -27,7 +27,8 @@ def still_water(spacing=0.01, end_time=1e4, **more):
         "name": "still", "tank": {"width": 0.6, "height": 0.6}, "gravity": [0, -9.81],
         "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.6, 0.3]}],
         "resolution": {"spacing": spacing},
-        "numerics": {"integrator": "kick_drift_kick", "courant": 0.25,
+        "numerics": {"scheme": "paper", "reinitialisation": None,
+                     "integrator": "kick_drift_kick", "courant": 0.25,
                      "density_diffusion": {"kind": "fourtakas", "delta": 0.1},
                      "artificial_viscosity": {"alpha": 0.1}},
         "end_time": end_time, **more}

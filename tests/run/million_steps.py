@@ -33,9 +33,9 @@ SAMPLES = 2000
 def still_water(example, steps):
     """A tank at rest with the scheme of an example, too long to end by itself."""
     sound = 10 * math.sqrt(2 * GRAVITY * DEPTH)
-    ratio = example["resolution"]["smoothing_ratio"]
     numerics = example["numerics"]
-    time = steps * numerics["courant"] * ratio * SPACING / sound  # s, with steps as long as at rest
+    ratio, courant = {"recommended": (1.5, 1.0), "paper": (1.0, 0.25)}[numerics["scheme"]]
+    time = steps * courant * ratio * SPACING / sound  # s, with steps as long as at rest
     return {
         "name": "still",
         "tank": {"width": WIDTH, "height": 1.5 * DEPTH},

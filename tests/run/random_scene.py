@@ -16,6 +16,8 @@ def draw(dice, node):
         return dice.choice(node["enum"])
     if node["type"] == "boolean":
         return dice.random() < 0.5
+    if node["type"] == ["object", "null"]:  # a term, which null leaves out
+        return None if dice.random() < 0.2 else draw_object(dice, node)
     if node["type"] == "object":
         return draw_object(dice, node)
     low = node.get("minimum", node.get("exclusiveMinimum", 0.0))
@@ -37,8 +39,11 @@ def draw_object(dice, node):
 
 def draw_numerics(dice, schema):
     numerics = draw_object(dice, schema["properties"]["numerics"])
+    # Without a scheme most scenes are refused: they could mean what they meant before there were any.
+    numerics["scheme"] = dice.choice(["recommended", "paper"])
     # What is unstable by its Courant number is refused: let most be below the limits.
-    leaps = numerics.get("integrator") != "kick_drift_kick"
+    usual = "kick_drift_kick" if numerics["scheme"] == "recommended" else "modified_leap_frog"
+    leaps = numerics.get("integrator", usual) != "kick_drift_kick"
     if leaps and dice.random() < 0.9:
         numerics.pop("particle_shifting", None)
     step = 0.4 if leaps else 1.2

@@ -32,6 +32,7 @@ def scene(**changes):
         "gravity": [0, -9.81],
         "resolution": {"spacing": 0.02},
         "numerics": {
+            "scheme": "paper",
             "integrator": "kick_drift_kick",
             "courant": 0.5,
             "wall_friction": {"alpha": 0.02},
@@ -273,7 +274,7 @@ class Signals(Sandbox):
 class Failures(Sandbox):
     def test_a_scheme_that_linear_analysis_calls_unstable_is_refused_with_the_limit(self):
         path = self.write_scene(scene(numerics={
-            "integrator": "modified_leap_frog", "courant": 0.9,
+            "scheme": "paper", "integrator": "modified_leap_frog", "courant": 0.9,
             "density_diffusion": {"delta": 0.1}, "artificial_viscosity": {"alpha": 0.02}}))
         for verb in ("validate", "plan", "run"):
             result = self.expect(3, verb, path)
@@ -506,6 +507,28 @@ class Reading(Sandbox):
         tables = sorted((self.folder / "tables").iterdir())
         self.assertEqual(len(tables), 3)
         self.assertEqual(len(tables[0].read_text().splitlines()), 1 + 450)
+
+    def test_validate_and_plan_warn_in_a_field_of_their_own(self):
+        behind = {"name": "P", "kind": "pressure", "position": [1.65, 0.1], "interval": 0.01}
+        path = self.write_scene(scene(sensors=[behind]))
+        said = "warning: /sensors/0/position: is (1.65, 0.1) m"
+        for verb in ("validate", "plan"):
+            self.assertIn(said, self.expect(0, verb, path).stdout)
+            report = json.loads(self.expect(0, verb, path, "--json").stdout)
+            self.assertEqual([each["pointer"] for each in report["warnings"]],
+                             ["/sensors/0/position"])
+        report = json.loads(self.expect(0, "validate", path, "--json").stdout)
+        self.assertEqual((report["valid"], report["problems"]), (True, []))
+
+    def test_a_scene_without_numerics_runs_with_the_recommended_scheme_and_says_so(self):
+        bare = scene(end_time=0.02)
+        del bare["numerics"]
+        path = self.write_scene(bare)
+        self.assertIn("[scheme recommended]", self.expect(0, "plan", path).stdout)
+        self.expect(0, "run", path, "--folder", "job")
+        kept = json.loads((self.folder / "job" / "scene.json").read_text())
+        self.assertEqual(kept["numerics"], {"scheme": "recommended"})
+        self.expect(0, "run", path, "--folder", "job")
 
     def test_plan_tells_what_runs_and_what_it_takes(self):
         text = self.expect(0, "plan", self.write_scene()).stdout

@@ -47,7 +47,7 @@ Scene small_dam_break(const SmallScene& choice) {
       Json::array({{{"shape", "rectangle"}, {"corner", {0.0, 0.0}}, {"size", {0.15, 0.15}}}});
   if (choice.frames) scene["output"] = {{"frames", {{"interval", 0.01}}}};
   // Some tests want a run that fails.
-  ParseResult result = parse_scene(scene.dump(), StabilityCheck::skip);
+  ParseResult result = parse_scene(scene.dump(), StabilityCheck::skip, SceneOrigin::job);
   if (result.scene) return *std::move(result.scene);
   std::string problems;
   for (const Problem& problem : result.problems) {

@@ -84,7 +84,9 @@ TEST(SceneSchema, DescribesEveryKeyAndGivesEveryNumberAUnitAndARange) {
   int numbers = 0;
   const auto check = [&](const nlohmann::json& property, const std::string& pointer) {
     EXPECT_FALSE(property.value("description", "").empty()) << pointer;
-    const std::string type = property.value("type", "");
+    const auto allowed = property.find("type");  // an array where null is a value
+    const std::string type =
+        allowed != property.end() && allowed->is_string() ? allowed->get<std::string>() : "";
     if (type != "number" && type != "integer") return;
     ++numbers;
     EXPECT_TRUE(property.contains("unit")) << pointer;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "engine/scene/estimate.hpp"
@@ -40,23 +41,48 @@ TEST(Plan, LeavesOutWhatAnEmptySceneDoesNotName) {
   const Plan p =
       plan(parsed(testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}})));
   EXPECT_THAT(names(p.passes_left_out),
-              IsSupersetOf({"density_diffusion", "artificial_viscosity", "wall_pressure",
-                            "wall_friction", "gravity", "reinitialisation", "sample"}));
-  EXPECT_THAT(names(p.passes), IsSupersetOf({"sort", "continuity", "momentum", "update"}));
+              IsSupersetOf({"physical_viscosity", "wall_pressure", "wall_friction", "wall_drag",
+                            "gravity", "reinitialisation", "sample"}));
+  EXPECT_THAT(names(p.passes), IsSupersetOf({"sort", "continuity", "momentum", "update",
+                                             "density_diffusion", "artificial_viscosity"}));
   EXPECT_THAT(names(p.files_left_out), IsSupersetOf({"series", "frames"}));
 }
 
-TEST(Plan, GivesTheMissingKeyAsTheReason) {
-  const Plan p = plan(parsed(base_scene()));
-  EXPECT_EQ(reason(p.passes_left_out, "density_diffusion"), "no key numerics.density_diffusion");
+TEST(Plan, GivesTheKeyOrTheSchemeAsTheReason) {
+  json text = base_scene();
+  text["numerics"] =
+      json::parse(R"({"scheme": "recommended", "artificial_viscosity": {"alpha": 0.1},
+      "density_diffusion": null, "wall_friction": {}})");
+  const Plan p = plan(parsed(text));
   EXPECT_EQ(reason(p.passes, "wall_pressure"), "key tank");
   EXPECT_EQ(reason(p.passes, "gravity"), "key gravity");
+  EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
+  EXPECT_EQ(reason(p.passes, "particle_shifting"), "scheme recommended");
+  EXPECT_EQ(reason(p.passes_left_out, "density_diffusion"), "null at numerics.density_diffusion");
+  EXPECT_EQ(reason(p.passes_left_out, "reinitialisation"), "scheme recommended");
+  EXPECT_EQ(reason(p.passes_left_out, "wall_drag"),
+            "scheme recommended, but excluded by another key");
+}
+
+TEST(Plan, SaysWhatTheWordOfTheSchemeStandsFor) {
+  json text = base_scene();
+  text["numerics"] = json::parse(R"({"artificial_viscosity": {"alpha": 0.1}, "courant": 0.5,
+                                     "scheme": "recommended"})");
+  std::map<std::string, std::string> said;
+  for (const PlanItem& item : plan(parsed(text)).numerics) {
+    said[item.name] = item.description + " [" + item.reason + "]";
+  }
+  EXPECT_EQ(said["artificial_viscosity.alpha"], "0.1 [key numerics.artificial_viscosity.alpha]");
+  EXPECT_EQ(said["artificial_viscosity.beta"], "0.5 [scheme recommended]");
+  EXPECT_EQ(said["courant"], "0.5 [key numerics.courant]");
+  EXPECT_EQ(said["kernel"], "wendland_c2 [scheme recommended]");
+  EXPECT_EQ(said["wall_friction"], "none [scheme recommended]");
+  EXPECT_EQ(said.size(), 15U) << "every number and word of the method, once";
 }
 
 TEST(Plan, RunsWhatASceneNames) {
   json text = base_scene();
-  text["numerics"] = json::parse(R"({"density_diffusion": {}, "artificial_viscosity": {},
-                                     "wall_friction": {}, "reinitialisation": {}})");
+  text["numerics"] = json::parse(R"({"scheme": "paper", "wall_friction": {}})");
   text["sensors"] = json::parse(R"([{"name": "e", "kind": "energy", "interval": 0.1}])");
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   const Plan p = plan(parsed(text));
@@ -81,7 +107,7 @@ TEST(Plan, RunsWhatASceneNames) {
 TEST(Plan, LeavesOutWhatHoldsAtWallsWhereThereIsNoWall) {
   json text = testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}});
   for (const char* term : {"wall_friction", "wall_drag"}) {
-    text["numerics"] = {{term, json::object()}};
+    text["numerics"] = {{"scheme", "paper"}, {term, json::object()}};
     const Plan p = plan(parsed(text));
     EXPECT_THAT(names(p.passes), Not(Contains(term)));
     EXPECT_THAT(names(p.passes_left_out), Contains(term));
@@ -93,7 +119,7 @@ TEST(Plan, NamesEachFieldOnceAsItsIntegratorCarriesIt) {
        {std::pair{"modified_leap_frog", Integrator::modified_leap_frog},
         std::pair{"kick_drift_kick", Integrator::kick_drift_kick}}) {
     json text = base_scene();
-    text["numerics"]["integrator"] = word;
+    text["numerics"] = {{"scheme", "recommended"}, {"integrator", word}};
     const Plan p = plan(parsed(text));
     EXPECT_EQ(p.fields.size() + p.fields_left_out.size(), kFields.size());
     for (const Field& field : kFields) {
@@ -105,8 +131,8 @@ TEST(Plan, NamesEachFieldOnceAsItsIntegratorCarriesIt) {
 
 TEST(Plan, IsJsonWithAReasonForEachItem) {
   const json text = json::parse(plan_json(plan(parsed(base_scene()))));
-  for (const char* key :
-       {"passes", "passes_left_out", "fields", "fields_left_out", "files", "files_left_out"}) {
+  for (const char* key : {"numerics", "passes", "passes_left_out", "fields", "fields_left_out",
+                          "files", "files_left_out"}) {
     ASSERT_TRUE(text.contains(key)) << key;
     for (const json& item : text[key]) EXPECT_FALSE(item.at("reason").get<std::string>().empty());
   }
@@ -126,7 +152,6 @@ TEST(Estimate, CountsWhatIsMade) {
 TEST(Estimate, ComesCloseForCurvedShapesAndObstacles) {
   json text = base_scene();
   text["resolution"]["spacing"] = 0.005;
-  text["numerics"]["integrator"] = "kick_drift_kick";
   text["fluid"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.5], "radius": 0.4}])");
   text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [1.5, 0.5], "radius": 0.4}])");
   const Scene scene = parsed(text);
@@ -143,16 +168,16 @@ TEST(Estimate, StepsAsEquation18Says) {
   text["material"]["sound_speed"] = 50;
   const Estimate e = estimate(parsed(text));
   const double speed = std::sqrt(2 * 9.81 * 0.5);
-  EXPECT_DOUBLE_EQ(e.time_step, 0.25 * 0.05 / (50 + speed));
+  EXPECT_DOUBLE_EQ(e.time_step, 1.5 * 0.05 / (50 + speed));
   EXPECT_EQ(e.steps, static_cast<std::uint64_t>(std::ceil(1 / e.time_step)));
 }
 
 TEST(Estimate, StepsAsTheForceConditionSaysWhereItIsShorter) {
   json text = base_scene();
   text["material"]["sound_speed"] = 5;
-  text["numerics"] = {{"integrator", "kick_drift_kick"}, {"courant", 2}};
+  text["numerics"] = {{"scheme", "paper"}, {"integrator", "kick_drift_kick"}, {"courant", 1.9}};
   EXPECT_DOUBLE_EQ(estimate(parsed(text)).time_step,
-                   std::min(2 * 0.05 / (5 + std::sqrt(9.81)), 0.25 * std::sqrt(0.05 / 9.81)));
+                   std::min(1.9 * 0.05 / (5 + std::sqrt(9.81)), 0.25 * std::sqrt(0.05 / 9.81)));
 }
 
 TEST(Estimate, CountsSamplesByIntervalAndStepsWhereThereIsNone) {

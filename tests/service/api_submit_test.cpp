@@ -55,6 +55,29 @@ TEST(ApiSubmit, KeepsTheSceneAsItWasSentAndWhatRebuildsTheRow) {
   EXPECT_EQ(file.priority, 3);
 }
 
+TEST(ApiSubmit, KeepsTheSchemeThatASceneMeansWithoutNamingIt) {
+  Service service;
+  Json scene = Json::parse(tiny_scene(0.1));
+  scene.erase("numerics");
+  const std::string id = body_of(service.post("/v1/jobs", scene.dump()))["id"];
+  const Json kept = Json::parse(read_file(service.data.job(id) / "scene.json"));
+  EXPECT_EQ(kept["numerics"]["scheme"], "recommended");
+}
+
+TEST(ApiSubmit, WarnsOfWhatMayNotBeMeantAndTakesItAllTheSame) {
+  Service service;
+  Json scene = Json::parse(tiny_scene(0.1));
+  EXPECT_TRUE(body_of(service.post("/v1/jobs", scene.dump()))["warnings"].empty());
+  scene["sensors"][0]["position"] = {1.75, 0.02};  // behind the wall, in the domain
+  for (const char* target : {"/v1/jobs", "/v1/jobs?dry_run=1"}) {
+    const Response response = service.post(target, scene.dump());
+    const Json warnings = body_of(response)["warnings"];
+    ASSERT_EQ(warnings.size(), 1U) << target << response.body;
+    EXPECT_EQ(warnings[0]["pointer"], "/sensors/0/position");
+    EXPECT_FALSE(warnings[0]["detail"].get<std::string>().empty());
+  }
+}
+
 TEST(ApiSubmit, NamesEveryProblemOfASceneAtOnceAndMakesNothing) {
   Service service;
   Json scene = Json::parse(tiny_scene(0.1));

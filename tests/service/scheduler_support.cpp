@@ -30,7 +30,8 @@ std::string tiny_scene(double end_time, double spacing) {
   Json scene = Json::parse(R"({
     "name": "tiny", "tank": {"width": 1.61, "height": 0.6}, "gravity": [0, -9.81],
     "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.6, 0.3]}],
-    "numerics": {"integrator": "kick_drift_kick", "courant": 0.5,
+    "numerics": {"scheme": "paper", "reinitialisation": null,
+                 "integrator": "kick_drift_kick", "courant": 0.5,
                  "density_diffusion": {"delta": 0.1}, "artificial_viscosity": {"alpha": 0.02}},
     "sensors": [{"name": "P1", "kind": "pressure", "position": [1.61, 0.02], "interval": 0.001}]
   })");
@@ -44,7 +45,8 @@ std::string endless_scene() {
     "name": "still", "tank": {"width": 0.6, "height": 0.6}, "gravity": [0, -9.81],
     "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.6, 0.3]}],
     "resolution": {"spacing": 0.03},
-    "numerics": {"integrator": "kick_drift_kick", "courant": 0.25,
+    "numerics": {"scheme": "paper", "reinitialisation": null,
+                 "integrator": "kick_drift_kick", "courant": 0.25,
                  "density_diffusion": {"kind": "fourtakas", "delta": 0.1},
                  "artificial_viscosity": {"alpha": 0.1}}
   })");

@@ -25,6 +25,8 @@ def scene(kind):
         "gravity": [0, -9.81],
         "resolution": {"spacing": 0.04},
         "numerics": {
+            "scheme": "paper",
+            "reinitialisation": None,
             "integrator": "kick_drift_kick",
             "courant": 0.5,
             "density_diffusion": {"delta": 0.1},

@@ -18,7 +18,7 @@ json puddle() {
     "name": "puddle", "tank": {"width": 0.2, "height": 0.2},
     "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.1, 0.1]}],
     "gravity": [0, -9.81], "resolution": {"spacing": 0.01},
-    "numerics": {"artificial_viscosity": {"alpha": 0.1}}, "end_time": 0.1})");
+    "numerics": {"scheme": "recommended", "artificial_viscosity": {"alpha": 0.1}}, "end_time": 0.1})");
 }
 
 json small_study() { return {{"name", "small"}, {"scene", puddle()}}; }
@@ -158,6 +158,44 @@ TEST(Study, SurvivesAnyText) {
     EXPECT_TRUE(plan.runs.empty()) << text;
     EXPECT_FALSE(plan.problems.empty()) << text;
   }
+}
+
+TEST(Study, LeavesATermOutForNullThatTheSchemeHas) {
+  json study = small_study();
+  study["vary"] = {
+      {{"key", "/numerics/particle_shifting"}, {"values", {nullptr, json{{"coefficient", 1}}}}}};
+  const StudyPlan plan = plan_of(study);
+  ASSERT_EQ(plan.runs.size(), 2u);
+  EXPECT_FALSE(plan.runs[0].scene.method.shifting);
+  EXPECT_EQ(plan.runs[1].scene.method.shifting->coefficient, 1.0);
+}
+
+TEST(Study, RefusesARunWhoseSolidsAreThinnerThanItsSpacingHolds) {
+  json study = small_study();
+  study["scene"]["obstacles"] = {
+      {{"shape", "rectangle"}, {"corner", {0.15, 0}}, {"size", {0.02, 0.1}}}};
+  study["vary"] = {{{"key", "/resolution/spacing"}, {"values", {0.01, 0.0125}}}};
+  expect_refused(study, "", "run small-spacing-0.0125: /obstacles/0");
+}
+
+// Before there were schemes this base meant kick_drift_kick without any term.
+TEST(Study, TakenBeforeThereWereSchemesKeepsItsMeaning) {
+  json study = small_study();
+  study["scene"]["numerics"] = {{"integrator", "kick_drift_kick"}};
+  expect_refused(study, "", "names no scheme");
+  const StudyPlan plan =
+      plan_study(study.dump(), nullptr, nullptr, kMaxStudyRuns, SceneOrigin::study);
+  ASSERT_EQ(plan.runs.size(), 1u);
+  EXPECT_FALSE(plan.runs[0].scene.method.shifting);
+  EXPECT_FALSE(parse_job_scene(plan.runs[0].scene_text).scene->method.shifting);
+}
+
+TEST(Study, GivesFoldersASceneThatNamesItsScheme) {
+  json study = small_study();
+  study["scene"].erase("numerics");
+  const StudyPlan plan = plan_of(study);
+  ASSERT_EQ(plan.runs.size(), 1u);
+  EXPECT_TRUE(parse_job_scene(plan.runs[0].scene_text).scene->method.shifting);
 }
 
 std::string text_of(const std::filesystem::path& path) {

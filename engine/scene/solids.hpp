@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+
+namespace sluice {
+
+/// All that is solid in a scene but a gate: the obstacles and, around the tank, the rest of the
+/// world but the air above an open top.
+class Solids {
+ public:
+  explicit Solids(const Scene& scene);
+
+  [[nodiscard]] bool holds(const Vec& point) const;
+  /// How far a point is from the open, m: 0 in the open. Where solids lie side by side, at least
+  /// this far.
+  [[nodiscard]] double depth(const Vec& point) const;
+  /// The same of the walls around the tank alone.
+  [[nodiscard]] double depth_in_walls(const Vec& point) const;
+  /// How far one gets from a point in the open or in a solid before that changes, m; nothing when
+  /// it is `most` or more. `step` is the length that nothing shorter than is found.
+  [[nodiscard]] std::optional<double> reach(const Vec& from, const Vec& direction, double most,
+                                            double step) const;
+
+ private:
+  struct Body {
+    const Shape* shape;
+    Box box;
+  };
+
+  std::vector<Body> bodies_;
+  std::optional<Tank> tank_;
+  double slack_;  ///< m; gaps of rounding are none
+};
+
+/// A place on an outline and the direction out of the shape there.
+struct OutlinePoint {
+  Vec place = Vec::Zero();
+  Vec out = Vec::Zero();
+};
+
+/// Points along an outline in order, equally far apart: about `step`, but at most about `most` of
+/// them, and a few on each side of a polygon. None is a corner.
+[[nodiscard]] std::vector<OutlinePoint> outline(const Shape& shape, double step, std::size_t most);
+
+/// A part of an outline across which something is narrow.
+struct Narrow {
+  double width = 0.0;  ///< m
+  Vec place = Vec::Zero();
+};
+
+enum class Across {
+  solid,  ///< from the open through the body and into the open again
+  gap,    ///< from the body through the open to what is solid again: a slit
+};
+
+/// The narrowest part that is narrower than `most`, m. What tapers to nothing is none: the corner
+/// of a body, or the gap under a circle on a floor.
+[[nodiscard]] std::optional<Narrow> narrow_part(const Solids& solids,
+                                                const std::vector<OutlinePoint>& outline,
+                                                Across across, double most, double spacing);
+
+}  // namespace sluice
