@@ -159,7 +159,7 @@ if [[ $state == running ]]; then
   ask -X POST "$url/v1/jobs/$job/checkpoint" >"$work/answer" || true
   while [[ $(newest_checkpoint) == "$before" && $state == running ]]; do look; done
   echo "  wrote $(basename "$(newest_checkpoint)")"
-  run kill -9 "$(cat "$work/data/jobs/$job/lock")"
+  run kill -9 "$(ask "$url/v1/jobs/$job" | field pid)"
   see_it_resumed 1
   follow has_done 60
 fi
