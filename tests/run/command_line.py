@@ -43,6 +43,7 @@ class Words(Sandbox):
                 ("sensors q --tau", "--tau needs a value: its smoothing time, s;"),
                 ("run case.json --threads 1 --threads 2", "--threads is given more than once;"),
                 ("run case.json --no-checkpoint --checkpoint-every 3", "cannot go together;"),
+                ("run case.json --no-checkpoint=foo", "--no-checkpoint takes no value;"),
                 ("stability --svg x", "--svg goes only with --map;"),
                 ("serve --data d --max-memory 3x", '--max-memory: is "3x", but must be a size in bytes, such as'),
                 ("serve --data d --max-queued -1", '--max-queued: is "-1", but must be a whole number, 0 or more;'),
