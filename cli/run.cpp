@@ -173,8 +173,9 @@ void add_run(CLI::App& app) {
       ->transform(one_of(forms));
   add_test_options(*verb, *arguments);
   verb->footer(
-      "SIGUSR1 asks for a checkpoint; SIGTERM or Ctrl-C stops with one (exit 85), a second one at "
-      "once.\nExample: sluice run dambreak-quick.json --folder first-try && sluice run first-try");
+      "SIGUSR1 asks for a checkpoint; SIGTERM or Ctrl-C stops with one (exit 85); once more "
+      "after two seconds: at once.\nExample: sluice run dambreak-quick.json --folder first-try && "
+      "sluice run first-try");
   verb->callback([arguments] { run(*arguments); });
 }
 

@@ -75,7 +75,7 @@ std::string next_commands(const JobFolder& folder, const Scene& scene, const Out
   for (const Sensor& sensor : scene.sensors) {
     if (sensor.kind != SensorKind::pressure) continue;
     return text + fmt::format("  to plot:    sluice sensors {} {} --filter gaussian --tau 0.002\n",
-                              shell_path(root), shell_word(sensor.name));
+                              shell_path(root), sensor.name);
   }
   return text;
 }

@@ -35,6 +35,8 @@ namespace {
 }  // namespace
 
 RunPool::RunPool() {
+  // A reader of what is said who went away ends no run.
+  std::signal(SIGPIPE, SIG_IGN);
   ::sigemptyset(&watched_);
   for (const int number : stop_signals()) ::sigaddset(&watched_, number);
   for (const int number : {SIGTSTP, SIGCHLD}) ::sigaddset(&watched_, number);

@@ -87,6 +87,8 @@ class StudyFolder {
     return evaluate(plan.study, plan.runs, std::move(rows));
   }
 
+  void publish_study(const std::string& text) const { publish_text(root_ / "study.json", text); }
+
   void publish(const StudyResult& result) const {
     publish_text(root_ / "results.md", study_markdown(result));
     publish_text(root_ / "results.csv", study_csv(result));
@@ -97,6 +99,15 @@ class StudyFolder {
  private:
   fs::path root_;
 };
+
+/// Makes the folder the working directory: it keeps its study, whatever it is called meanwhile.
+StudyFolder entered(const fs::path& root) {
+  std::error_code error;
+  fs::current_path(root, error);
+  if (!error) return StudyFolder(".");
+  throw CommandEnd(ExitCode::storage_failure,
+                   fmt::format("cannot enter {}: {}", root.string(), error.message()));
+}
 
 /// Runs what is not done yet, several at once, and says how each ended.
 class StudyRunner {
@@ -231,14 +242,15 @@ void study(StudyArguments arguments) {
   plan.study.targets.insert(plan.study.targets.end(), arguments.below.begin(),
                             arguments.below.end());
   const fs::path root = arguments.folder.empty() ? fs::path(plan.study.name) : arguments.folder;
-  const StudyFolder folder(root);
-  folder.make();
-  const FolderLock lock(folder.lock());
+  const std::string text = read_text(arguments.file(), kMaxSceneBytes + 1);
+  StudyFolder(root).make();
+  const FolderLock lock(StudyFolder(root).lock());
+  const StudyFolder folder = entered(root);
   // Until the results are written: a signal that comes twice must not end the study before.
   RunPool pool;
   bool finished = true;
   if (!arguments.no_run) {
-    publish_text(root / "study.json", read_text(arguments.file(), kMaxSceneBytes + 1));
+    folder.publish_study(text);
     const int cores = arguments.cores > 0
                           ? arguments.cores
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -246,8 +258,8 @@ void study(StudyArguments arguments) {
   }
   const StudyResult result = folder.read(plan);
   folder.publish(result);
-  const std::string text = arguments.json ? study_json(result).dump(2) + "\n" : study_text(result);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  const std::string shown = arguments.json ? study_json(result).dump(2) + "\n" : study_text(result);
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
   if (!finished) throw CommandEnd(ExitCode::checkpointed);
   if (!arguments.no_run) end_unless_complete(result, root);
 }

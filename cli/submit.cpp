@@ -10,7 +10,6 @@
 #include "cli/scene_file.hpp"
 #include "cli/service_client.hpp"
 #include "cli/service_study.hpp"
-#include "cli/shell_word.hpp"
 #include "cli/verbs.hpp"
 #include "cli/watch.hpp"
 
@@ -83,7 +82,7 @@ std::string sensor_to_show(const std::string& scene) {
   const Json sensors = member(Json::parse(scene, nullptr, /*allow_exceptions=*/false), "sensors");
   for (const Json& sensor : sensors) {
     if (text_at(sensor, "kind") == "pressure") {
-      return fmt::format(" {} --filter gaussian --tau 0.002", shell_word(text_at(sensor, "name")));
+      return fmt::format(" {} --filter gaussian --tau 0.002", text_at(sensor, "name"));
     }
   }
   return {};

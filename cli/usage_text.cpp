@@ -68,6 +68,11 @@ std::string plain_text(const CLI::App& app, const CLI::App* verb, const CLI::Par
     return twice ? fmt::format("{} is given more than once", name)
                  : fmt::format("{} needs a value{}", name, meaning(verb, name));
   }
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+    // "Could not convert: --name = value": values of options are checked before.
+    const std::size_t end = said.find(" = ");
+    return fmt::format("{} takes no value", last_word(said.substr(0, end)));
+  }
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) {
     return fmt::format("{} and {} cannot go together", name, last_word(said));
   }

@@ -69,6 +69,21 @@ class Moved(Sandbox):
         self.assertFalse((self.folder / "one").exists())
         self.assert_tidy("two/job")
 
+    def test_a_study_whose_folder_is_renamed_keeps_its_runs(self):
+        study = {"name": "pair", "scene": ENDLESS, "vary": [{"key": "/end_time", "values": [0.05, 5e3]}]}
+        (self.folder / "study.json").write_text(json.dumps(study))
+        process = self.start("study", "study.json", "--folder", "out", "--cores", 1)
+        while not list(self.folder.glob("out/runs/*/checkpoint-*.h5")):
+            self.assertIsNone(process.poll())
+        (self.folder / "out").rename(self.folder / "moved")
+        while not list(self.folder.glob("moved/runs/pair-end_time-5000/checkpoint-*.h5")):
+            self.assertIsNone(process.poll())
+        process.terminate()
+        process.stdout.read()
+        self.assertEqual(process.wait(), 85)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["moved", "study.json"])
+        self.assertTrue((self.folder / "moved" / "results.json").exists())
+
     def test_a_folder_that_is_removed_ends_the_run_with_a_word_and_does_not_come_back(self):
         process = self.running(*OFTEN)
         # Moved first: what is removed file by file may get a new file meanwhile.

@@ -244,6 +244,7 @@ def walk_queue(walk, server, running):
     walk.ask(server, "POST", job + "/cancel")
     walk.ask(server, "POST", job + "/pause")
     walk.ask(server, "POST", job + "/resume")
+    walk.ask(server, "POST", job + "/cancel")
     walk.ask(server, "DELETE", job)
     walk.ask(server, "POST", f"/v1/jobs/{running}/checkpoint")
 
@@ -288,6 +289,7 @@ def walk_ended_job(walk, server, done):
     for body in ({"end_time": 1e12}, {"end_time": "x"}):
         walk.ask(server, "POST", job + "/resume", body)
     walk.ask(server, "POST", job + "/cancel")
+    walk.ask(server, "POST", job + "/resume")
     walk.ask(server, "POST", job + "/resume", {"end_time": 12.5})
 
 

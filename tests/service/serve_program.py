@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from live import Server, scene
@@ -88,6 +89,7 @@ class Serve(unittest.TestCase):
             os.kill(worker, signal.SIGSTOP)  # so that the first signal alone cannot end it
             server.process.send_signal(signal.SIGTERM)
             server.wait_until("the drain", lambda: server.ask("GET", "/readyz").status == 503)
+            time.sleep(2.2)  # within two seconds it would be the same wish
             server.process.send_signal(signal.SIGTERM)
             self.assertEqual(server.process.wait(30), 128 + signal.SIGTERM)
             os.kill(worker, signal.SIGCONT)
