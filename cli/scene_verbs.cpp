@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/job_text.hpp"
 #include "cli/machine.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
-#include "engine/run/progress.hpp"
 #include "engine/scene/estimate.hpp"
 #include "engine/scene/initial.hpp"
 #include "engine/scene/parse.hpp"
@@ -55,7 +55,7 @@ void print_items(std::string_view title, const std::vector<PlanItem>& items) {
   if (items.empty()) return;
   fmt::print("{}\n", title);
   for (const PlanItem& item : items) {
-    fmt::print("  {:<24} {} [{}]\n", item.name, item.description, item.reason);
+    fmt::print("  {:<29} {} [{}]\n", item.name, item.description, item.reason);
   }
 }
 
@@ -77,7 +77,7 @@ void print_plan(const Plan& plan, const Estimate& estimate, const StabilityPredi
     fmt::print(
         "  {} on {} thread{} of an otherwise idle machine ({:.1f} million particle steps per "
         "second)\n",
-        duration_text(cost->seconds), cost->threads, cost->threads == 1 ? "" : "s",
+        cost_text(cost->seconds), cost->threads, cost->threads == 1 ? "" : "s",
         cost->particle_steps_per_second * 1e-6);
   }
   fmt::print("stability\n  {}\n", stability_text(outlook));

@@ -100,22 +100,31 @@ Json json_of(const View& view, const SensorArguments& arguments) {
   return object;
 }
 
+/// What was got of the interval that the scene asks for: no shorter than the time step, s.
+std::optional<double> mean_interval(const Series& series) {
+  if (series.size() < 2) return std::nullopt;
+  return (series.time.back() - series.time.front()) / static_cast<double>(series.size() - 1);
+}
+
 void list_sensors(const std::vector<Series>& all, Format format) {
   Json list = Json::array();
-  if (format == Format::csv) fmt::print("name,kind,samples,first_s,last_s\n");
+  if (format == Format::csv) fmt::print("name,kind,samples,first_s,last_s,mean_interval_s\n");
   for (const Series& series : all) {
     const bool empty = series.size() == 0;
     const Json first = empty ? Json(nullptr) : Json(series.time.front());
     const Json last = empty ? Json(nullptr) : Json(series.time.back());
+    const auto mean = mean_interval(series);
     if (format == Format::csv) {
-      fmt::print("{},{},{},{},{}\n", series.name, series.kind, series.size(),
-                 empty ? "" : first.dump(), empty ? "" : last.dump());
+      fmt::print("{},{},{},{},{},{}\n", series.name, series.kind, series.size(),
+                 empty ? "" : first.dump(), empty ? "" : last.dump(),
+                 mean ? fmt::format("{:.4g}", *mean) : "");
     }
     list.push_back(Json{{"name", series.name},
                         {"kind", series.kind},
                         {"samples", series.size()},
                         {"first", first},
-                        {"last", last}});
+                        {"last", last},
+                        {"mean_interval", mean ? Json(*mean) : Json(nullptr)}});
   }
   if (format == Format::json) fmt::print("{}\n", list.dump(2));
 }

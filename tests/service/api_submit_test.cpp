@@ -67,6 +67,7 @@ TEST(ApiSubmit, KeepsTheSchemeThatASceneMeansWithoutNamingIt) {
 TEST(ApiSubmit, WarnsOfWhatMayNotBeMeantAndTakesItAllTheSame) {
   Service service;
   Json scene = Json::parse(tiny_scene(0.1));
+  scene["sensors"][0]["interval"] = 0.01;
   EXPECT_TRUE(body_of(service.post("/v1/jobs", scene.dump()))["warnings"].empty());
   scene["sensors"][0]["position"] = {1.75, 0.02};  // behind the wall, in the domain
   for (const char* target : {"/v1/jobs", "/v1/jobs?dry_run=1"}) {
