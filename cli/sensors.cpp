@@ -100,12 +100,6 @@ Json json_of(const View& view, const SensorArguments& arguments) {
   return object;
 }
 
-/// What was got of the interval that the scene asks for: no shorter than the time step, s.
-std::optional<double> mean_interval(const Series& series) {
-  if (series.size() < 2) return std::nullopt;
-  return (series.time.back() - series.time.front()) / static_cast<double>(series.size() - 1);
-}
-
 void list_sensors(const std::vector<Series>& all, Format format) {
   Json list = Json::array();
   if (format == Format::csv) fmt::print("name,kind,samples,first_s,last_s,mean_interval_s\n");
@@ -113,11 +107,11 @@ void list_sensors(const std::vector<Series>& all, Format format) {
     const bool empty = series.size() == 0;
     const Json first = empty ? Json(nullptr) : Json(series.time.front());
     const Json last = empty ? Json(nullptr) : Json(series.time.back());
-    const auto mean = mean_interval(series);
+    const auto mean = series.mean_interval();
     if (format == Format::csv) {
       fmt::print("{},{},{},{},{},{}\n", series.name, series.kind, series.size(),
                  empty ? "" : first.dump(), empty ? "" : last.dump(),
-                 mean ? fmt::format("{:.4g}", *mean) : "");
+                 mean ? Json(*mean).dump() : "");
     }
     list.push_back(Json{{"name", series.name},
                         {"kind", series.kind},
