@@ -100,13 +100,18 @@ std::string rest_text(const Json& job) {
   return state != "failed" || told ? text : fmt::format("{}; {}", text, advice);
 }
 
+std::string cost_text(double seconds) {
+  constexpr double kFew = 10.0;
+  return seconds < kFew ? fmt::format("{:.2g} s", seconds) : duration_text(seconds);
+}
+
 std::string estimate_text(const Json& estimate) {
   if (!estimate.is_object()) return {};
   return fmt::format(
       "  {} fluid and {} wall particles, about {} steps: {} on an otherwise idle machine\n"
       "  {} of memory, {} on disk, {} samples, {} frames\n",
       count_at(estimate, "fluid_particles"), count_at(estimate, "wall_particles"),
-      count_at(estimate, "steps"), duration_text(number_at(estimate, "seconds")),
+      count_at(estimate, "steps"), cost_text(number_or(estimate, "seconds", 0.0)),
       size_text(number_at(estimate, "memory_bytes")), size_text(number_at(estimate, "disk_bytes")),
       count_at(estimate, "samples"), count_at(estimate, "frames"));
 }

@@ -21,6 +21,9 @@ namespace sluice {
 /// it failed.
 [[nodiscard]] std::string rest_text(const nlohmann::ordered_json& job);
 
+/// What a run takes: two digits below ten seconds, then as duration_text.
+[[nodiscard]] std::string cost_text(double seconds);
+
 /// Particles, steps, memory, disk and time of an estimate: two lines, each indented.
 [[nodiscard]] std::string estimate_text(const nlohmann::ordered_json& estimate);
 

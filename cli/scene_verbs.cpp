@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "cli/checks.hpp"
+#include "cli/job_text.hpp"
 #include "cli/machine.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
-#include "engine/run/progress.hpp"
 #include "engine/scene/estimate.hpp"
 #include "engine/scene/initial.hpp"
 #include "engine/scene/parse.hpp"
@@ -56,7 +56,7 @@ void print_items(std::string_view title, const std::vector<PlanItem>& items) {
   if (items.empty()) return;
   fmt::print("{}\n", title);
   for (const PlanItem& item : items) {
-    fmt::print("  {:<24} {} [{}]\n", item.name, item.description, item.reason);
+    fmt::print("  {:<29} {} [{}]\n", item.name, item.description, item.reason);
   }
 }
 
@@ -78,7 +78,7 @@ void print_plan(const Plan& plan, const Estimate& estimate, const StabilityPredi
     fmt::print(
         "  {} on {} thread{} of an otherwise idle machine ({:.1f} million particle steps per "
         "second)\n",
-        duration_text(cost->seconds), cost->threads, cost->threads == 1 ? "" : "s",
+        cost_text(cost->seconds), cost->threads, cost->threads == 1 ? "" : "s",
         cost->particle_steps_per_second * 1e-6);
   }
   fmt::print("stability\n  {}\n", stability_text(outlook));

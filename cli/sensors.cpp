@@ -146,20 +146,23 @@ Json json_of(const View& view, const SensorArguments& arguments) {
 
 void list_sensors(const std::vector<Series>& all, Format format) {
   Json list = Json::array();
-  if (format == Format::csv) fmt::print("name,kind,samples,first_s,last_s\n");
+  if (format == Format::csv) fmt::print("name,kind,samples,first_s,last_s,mean_interval_s\n");
   for (const Series& series : all) {
     const bool empty = series.size() == 0;
     const Json first = empty ? Json(nullptr) : Json(series.time.front());
     const Json last = empty ? Json(nullptr) : Json(series.time.back());
+    const auto mean = series.mean_interval();
     if (format == Format::csv) {
-      fmt::print("{},{},{},{},{}\n", series.name, series.kind, series.size(),
-                 empty ? "" : first.dump(), empty ? "" : last.dump());
+      fmt::print("{},{},{},{},{},{}\n", series.name, series.kind, series.size(),
+                 empty ? "" : first.dump(), empty ? "" : last.dump(),
+                 mean ? Json(*mean).dump() : "");
     }
     list.push_back(Json{{"name", series.name},
                         {"kind", series.kind},
                         {"samples", series.size()},
                         {"first", first},
-                        {"last", last}});
+                        {"last", last},
+                        {"mean_interval", mean ? Json(*mean) : Json(nullptr)}});
   }
   if (format == Format::json) fmt::print("{}\n", list.dump(2));
 }

@@ -47,11 +47,11 @@ void print_notes(const HttpReply& reply) {
 std::string cell(const Json& value) { return value.is_number() ? value.dump() : ""; }
 
 void print_list(const Json& list) {
-  fmt::print("name,kind,samples,first_s,last_s\n");
+  fmt::print("name,kind,samples,first_s,last_s,mean_interval_s\n");
   for (const Json& sensor : member(list, "sensors")) {
-    fmt::print("{},{},{},{},{}\n", text_at(sensor, "name"), text_at(sensor, "kind"),
+    fmt::print("{},{},{},{},{},{}\n", text_at(sensor, "name"), text_at(sensor, "kind"),
                count_at(sensor, "samples"), cell(member(sensor, "first")),
-               cell(member(sensor, "last")));
+               cell(member(sensor, "last")), cell(member(sensor, "mean_interval")));
   }
 }
 

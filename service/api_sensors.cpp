@@ -146,12 +146,14 @@ Json sensor_json(const Sensor& sensor, const Series* series) {
     }
   }
   const bool empty = series == nullptr || series->size() == 0;
+  const auto mean = empty ? std::nullopt : series->mean_interval();
   return Json{{"name", sensor.name},
               {"kind", to_string(sensor.kind)},
               {"interval", sensor.interval},
               {"samples", series == nullptr ? 0 : series->size()},
               {"first", empty ? Json(nullptr) : Json(series->time.front())},
               {"last", empty ? Json(nullptr) : Json(series->time.back())},
+              {"mean_interval", mean ? Json(*mean) : Json(nullptr)},
               {"columns", std::move(columns)}};
 }
 

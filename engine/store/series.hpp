@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct Series {
       0;  ///< the next sample is due at the first step with time >= next_index * interval
 
   [[nodiscard]] std::size_t size() const { return time.size(); }
+  /// What was got of the interval that the scene asks for, s: no shorter than a time step. Nothing
+  /// of fewer than two samples.
+  [[nodiscard]] std::optional<double> mean_interval() const {
+    if (size() < 2) return std::nullopt;
+    return (time.back() - time.front()) / static_cast<double>(size() - 1);
+  }
   friend bool operator==(const Series&, const Series&) = default;
 };
 

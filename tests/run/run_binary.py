@@ -525,10 +525,10 @@ class Reading(Sandbox):
         del bare["numerics"]
         path = self.write_scene(bare)
         self.assertIn("[scheme recommended]", self.expect(0, "plan", path).stdout)
-        self.expect(0, "run", path, "--folder", "job")
-        kept = json.loads((self.folder / "job" / "scene.json").read_text())
+        self.expect(0, "run", path, "--folder", "bare")
+        kept = json.loads((self.folder / "bare" / "scene.json").read_text())
         self.assertEqual(kept["numerics"], {"scheme": "recommended"})
-        self.expect(0, "run", path, "--folder", "job")
+        self.expect(0, "run", path, "--folder", "bare")
 
     def test_plan_tells_what_runs_and_what_it_takes(self):
         text = self.expect(0, "plan", self.write_scene()).stdout

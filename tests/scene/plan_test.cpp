@@ -163,6 +163,38 @@ TEST(Estimate, ComesCloseForCurvedShapesAndObstacles) {
   EXPECT_NEAR(static_cast<double>(e.wall_particles), walls, 0.3 * walls);
 }
 
+TEST(Estimate, CountsExactlyWhatWasMade) {
+  json text = base_scene();
+  text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.2], "radius": 0.15}])");
+  const Scene scene = parsed(text);
+  const InitialParticles made = create_particles(scene);
+  ASSERT_LT(made.state.particles.size(), estimate(scene).fluid_particles) << "displaced";
+  EXPECT_EQ(estimate(scene, made).fluid_particles, made.state.particles.size());
+  EXPECT_EQ(estimate(scene, made).wall_particles, made.walls.size());
+}
+
+TEST(Estimate, TakesTheTimeOfParticlesTimesStepsAndMoreInDoublePrecision) {
+  json text = base_scene();
+  const Scene once = parsed(text);
+  text["end_time"] = 2;
+  const Scene twice = parsed(text);
+  EXPECT_NEAR(
+      expected_core_seconds(twice, estimate(twice)) / expected_core_seconds(once, estimate(once)),
+      2.0, 0.01);
+  text["numerics"]["precision"] = "double";
+  const Scene precise = parsed(text);
+  EXPECT_GT(expected_core_seconds(precise, estimate(precise)),
+            expected_core_seconds(twice, estimate(twice)));
+}
+
+TEST(Estimate, AsksForTheDiskThatAFrameTakes) {
+  json text = base_scene();
+  const std::uint64_t bare = estimate(parsed(text)).disk_bytes;
+  text["output"]["frames"]["interval"] = 0.5;
+  // x, y, vx, vy and pressure in single precision, and an id of eight bytes.
+  EXPECT_EQ(estimate(parsed(text)).disk_bytes - bare, 3U * 200 * (5 * 4 + 8));
+}
+
 TEST(Estimate, StepsAsEquation18Says) {
   json text = base_scene();
   text["material"]["sound_speed"] = 50;

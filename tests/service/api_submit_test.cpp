@@ -4,6 +4,9 @@
 #include <thread>
 #include <vector>
 
+#include "engine/scene/estimate.hpp"
+#include "engine/scene/initial.hpp"
+#include "engine/scene/parse.hpp"
 #include "service/job_file.hpp"
 #include "tests/service/api_support.hpp"
 
@@ -64,9 +67,22 @@ TEST(ApiSubmit, KeepsTheSchemeThatASceneMeansWithoutNamingIt) {
   EXPECT_EQ(kept["numerics"]["scheme"], "recommended");
 }
 
+TEST(ApiSubmit, EstimatesTheTimeThatPlanDoes) {
+  Service service;
+  const Json scene = Json::parse(tiny_scene(0.1));
+  const Scene parsed = parse_scene(scene.dump()).scene.value();
+  const double core_seconds =
+      expected_core_seconds(parsed, estimate(parsed, create_particles(parsed)));
+  const Json job = body_of(service.post("/v1/jobs?threads=2", scene.dump()));
+  EXPECT_DOUBLE_EQ(job["estimate"]["seconds"].get<double>(), core_seconds / 2);
+  const Json dry = body_of(service.post("/v1/jobs?dry_run=1", scene.dump()));
+  EXPECT_DOUBLE_EQ(dry["estimate"]["seconds"].get<double>(), core_seconds);
+}
+
 TEST(ApiSubmit, WarnsOfWhatMayNotBeMeantAndTakesItAllTheSame) {
   Service service;
   Json scene = Json::parse(tiny_scene(0.1));
+  scene["sensors"][0]["interval"] = 0.01;
   EXPECT_TRUE(body_of(service.post("/v1/jobs", scene.dump()))["warnings"].empty());
   scene["sensors"][0]["position"] = {1.75, 0.02};  // behind the wall, in the domain
   for (const char* target : {"/v1/jobs", "/v1/jobs?dry_run=1"}) {

@@ -72,7 +72,7 @@ TEST_F(Rebuild, GivesBackAllThatFolderAndSceneTell) {
   make_folder(data_, id, file);
   EXPECT_EQ(rebuild(), 1U);
   const Job job = store_.find(id).value();
-  const Scene scene = parse_scene(scene_text(1.0)).scene.value();
+  const Scene scene = parse_job_scene(scene_text(1.0)).scene.value();
   EXPECT_EQ(job.state, JobState::queued);
   EXPECT_EQ(job.name, "drop");
   EXPECT_EQ(job.label, "käse");
