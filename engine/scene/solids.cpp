@@ -1,0 +1,57 @@
+#include "engine/scene/solids.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "engine/scene/geometry.hpp"
+
+namespace sluice {
+namespace {
+
+/// A solid with the box that holds all that is deep in it.
+struct Solid {
+  Shape shape;
+  Box box;
+};
+
+/// The box without a margin on all sides.
+Box inner(Box box, double margin) {
+  box.min.array() += margin;
+  box.max.array() -= margin;
+  return box;
+}
+
+bool is_deep(const LiftedWall& gate, const Vec& place, double time, double depth) {
+  Box standing = gate.place;
+  standing.min.y() += gate.speed * time;
+  return inner(standing, depth).contains(place);
+}
+
+Box room_of(const Tank& tank, double depth) {
+  Box room{Vec::Constant(-depth), Vec(tank.width, tank.height).array() + depth};
+  if (tank.open_top) room.max.y() = std::numeric_limits<double>::infinity();
+  return room;
+}
+
+}  // namespace
+
+Method method_with_solids(const Scene& scene) {
+  Method method = scene.method;
+  const double depth = kDepthInSolid * method.spacing;
+  if (scene.tank) method.room = room_of(*scene.tank, depth);
+  std::vector<Solid> solids;
+  for (const Shape& shape : scene.obstacles) solids.push_back({shape, inner(bounds(shape), depth)});
+  if (solids.empty() && !method.lifted_wall) return method;
+  method.in_solid = [solids = std::move(solids), gate = method.lifted_wall, depth](const Vec& place,
+                                                                                   double time) {
+    if (gate && is_deep(*gate, place, time, depth)) return true;
+    return std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
+      return solid.box.contains(place) && signed_distance(solid.shape, place) < -depth;
+    });
+  };
+  return method;
+}
+
+}  // namespace sluice
