@@ -30,10 +30,10 @@ double rounded_down(double value) {
 }
 
 void add_smaller_courant(const Method& method, Steps& steps) {
-  const double limit = kDisorderShare * analyse_scheme(method)->limits().scheme;
+  const double limit = analyse_scheme(method)->limits().scheme;
   if (limit <= 0.0 || method.courant <= limit) return;
   steps.push_back(fmt::format("lower numerics.courant from {:g} to {:g}, what these terms allow",
-                              method.courant, rounded_down(limit)));
+                              method.courant, rounded_down(kDisorderShare * limit)));
 }
 
 void add_missing_terms(const Method& method, Steps& steps) {

@@ -162,12 +162,14 @@ class RunLoop {
 
 Json started_fields(const Simulation& simulation, const JobFolder& folder) {
   const Solver& solver = simulation.solver();
+  // A few may be gone before the first step: they have started as well.
+  const std::size_t gone = solver.step_count() == 0 ? solver.retired().size() : 0;
   return Json{{"scene", simulation.scene().name},
               {"folder", folder.paths().root().string()},
               {"step", solver.step_count()},
               {"time", solver.time()},
               {"end_time", simulation.scene().end_time},
-              {"particles", solver.particle_count()},
+              {"particles", solver.particle_count() + gone},
               {"wall_particles", solver.wall_count()},
               {"threads", solver.threads()},
               {"simd_target", solver.simd_target()},

@@ -14,6 +14,7 @@ namespace {
 struct Solid {
   Shape shape;
   Box box;
+  double depth;  ///< m
 };
 
 /// The box without a margin on all sides.
@@ -29,26 +30,36 @@ bool is_deep(const LiftedWall& gate, const Vec& place, double time, double depth
   return inner(standing, depth).contains(place);
 }
 
-Box room_of(const Tank& tank, double depth) {
-  Box room{Vec::Constant(-depth), Vec(tank.width, tank.height).array() + depth};
-  if (tank.open_top) room.max.y() = std::numeric_limits<double>::infinity();
-  return room;
+void add_tank(const Tank& tank, double depth, Method& method) {
+  method.room = {Vec::Constant(-depth), Vec(tank.width, tank.height).array() + depth};
+  if (!tank.open_top) return;
+  method.room.max.y() = std::numeric_limits<double>::infinity();
+  method.walls_reach = tank.height - depth;
 }
 
 }  // namespace
 
+double allowed_depth(const Shape& solid, double spacing) {
+  // Half of the thickness of a long plate.
+  const double half_thickness = area(solid) / perimeter(solid);
+  return std::clamp(0.6 * half_thickness, 0.4 * spacing, spacing);
+}
+
 Method method_with_solids(const Scene& scene) {
   Method method = scene.method;
-  const double depth = kDepthInSolid * method.spacing;
-  if (scene.tank) method.room = room_of(*scene.tank, depth);
+  const double depth = method.spacing;
+  if (scene.tank) add_tank(*scene.tank, depth, method);
   std::vector<Solid> solids;
-  for (const Shape& shape : scene.obstacles) solids.push_back({shape, inner(bounds(shape), depth)});
+  for (const Shape& shape : scene.obstacles) {
+    const double here = allowed_depth(shape, method.spacing);
+    solids.push_back({shape, inner(bounds(shape), here), here});
+  }
   if (solids.empty() && !method.lifted_wall) return method;
   method.in_solid = [solids = std::move(solids), gate = method.lifted_wall, depth](const Vec& place,
                                                                                    double time) {
     if (gate && is_deep(*gate, place, time, depth)) return true;
     return std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
-      return solid.box.contains(place) && signed_distance(solid.shape, place) < -depth;
+      return solid.box.contains(place) && signed_distance(solid.shape, place) < -solid.depth;
     });
   };
   return method;

@@ -4,9 +4,10 @@
 
 namespace sluice {
 
-/// How deep in a solid a particle may be before it has leaked, in spacings: there the first row of
-/// dummy particles stands, and behind it they push on instead of back.
-inline constexpr double kDepthInSolid = 0.5;
+/// How deep in a solid a particle may be before it has leaked, m: one spacing, beyond the first row
+/// of dummy particles, for in a hard impact some come as far as that row and are thrown back. Less
+/// in a solid that is thinner than some three spacings, so that its middle is deep.
+[[nodiscard]] double allowed_depth(const Shape& solid, double spacing);
 
 /// The scene's method with what its solids fill: the tank's walls, obstacles, and the gate while it
 /// is there.

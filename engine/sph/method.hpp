@@ -126,10 +126,11 @@ struct Method {
   double rim_left = -std::numeric_limits<double>::infinity();
   double rim_right = std::numeric_limits<double>::infinity();
 
-  /// m; what is outside of it and below wall_top is in a wall of the tank. Of an open tank it has
-  /// no upper edge.
+  /// m; what is outside of the room and below this height is deep in a wall of the tank. Of an open
+  /// tank that is a little below wall_top: what comes over a rim may lie down on it.
   Box room{Vec::Constant(-std::numeric_limits<double>::infinity()),
            Vec::Constant(std::numeric_limits<double>::infinity())};
+  double walls_reach = std::numeric_limits<double>::infinity();
   /// Whether a place is in an obstacle or in the gate at time t; empty: there is none. Asked once
   /// in a while for each particle, on any thread.
   std::function<bool(const Vec&, double t)> in_solid;
@@ -147,9 +148,9 @@ struct Method {
 
   /// Whether a particle there stays in the run.
   [[nodiscard]] bool keeps(const Vec& p) const {
-    const bool above = wall_top && p.y() >= *wall_top;
-    const bool within = above ? p.x() >= rim_left && p.x() <= rim_right : room.contains(p);
-    return domain.contains(p) && within;
+    const bool over = wall_top && p.y() >= *wall_top && !(p.x() >= rim_left && p.x() <= rim_right);
+    const bool in_wall = p.y() < walls_reach && !room.contains(p);
+    return domain.contains(p) && !over && !in_wall;
   }
   /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
   [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }

@@ -275,7 +275,8 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   const V room_left = hn::Set(d, room.min.x());
   const V room_right = hn::Set(d, room.max.x());
   const V room_floor = hn::Set(d, room.min.y());
-  const V room_top = hn::Set(d, room.max.y());
+  const V room_ceiling = hn::Set(d, room.max.y());
+  const V walls_reach = hn::Set(d, method.walls_reach);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = at(p.id, s) >= hn::Zero(d);
     const V vx = at(p.vx, s);
@@ -291,11 +292,11 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     const auto inside =
         hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
                 hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
-    const auto above = y >= top;
-    const auto left = hn::IfThenElse(above, rim_left, room_left);
-    const auto right = hn::IfThenElse(above, rim_right, room_right);
-    const auto beside = hn::Or(hn::Or(x<left, x> right), hn::Or(y<room_floor, y> room_top));
-    const auto kept = hn::AndNot(beside, inside);
+    const auto over = hn::And(y >= top, hn::Or(x<rim_left, x> rim_right));
+    const auto outside_room =
+        hn::Or(hn::Or(x<room_left, x> room_right), hn::Or(y<room_floor, y> room_ceiling));
+    const auto in_wall = hn::And(y < walls_reach, outside_room);
+    const auto kept = hn::AndNot(hn::Or(over, in_wall), inside);
     const auto fit = hn::And(v_sq <= sound_sq, hn::Abs(rho) <= most_excess);
     leaving = hn::Or(leaving, hn::AndNot(hn::And(kept, fit), used));
   }

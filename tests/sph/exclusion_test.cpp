@@ -225,12 +225,14 @@ TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
   Method m = plain_method();
   m.room = {{-1.0, -1.0}, {1.0, kInfinity}};
   m.wall_top = 0.5;
+  m.walls_reach = 0.4;
   m.rim_left = -1.2;
   m.rim_right = 1.2;
   EXPECT_TRUE(m.keeps({0.0, 0.0}));
   EXPECT_FALSE(m.keeps({1.1, 0.0}));
   EXPECT_FALSE(m.keeps({0.0, -1.1}));
   EXPECT_TRUE(m.keeps({1.1, 0.6})) << "over the wall, before its middle";
+  EXPECT_TRUE(m.keeps({1.1, 0.45})) << "it lies on the wall";
   EXPECT_FALSE(m.keeps({1.3, 0.6}));
   for (const Integrator integrator : kIntegrators) {
     m.integrator = integrator;
