@@ -17,7 +17,8 @@ int default_threads(const Scene& scene) {
 void add_execution_options(CLI::App& verb, int& threads, std::string& simd) {
   verb.add_option("--threads", threads, "Threads; by default as many as there are cores and use")
       ->check(whole_between(1, 1024));
-  verb.add_option("--simd", simd, "SIMD target instead of this machine's best")
+  verb.add_option("--simd", simd,
+                  "SIMD target instead of that of SLUICE_SIMD, else this machine's best")
       ->check(one_of(std::vector<std::string>{"SSE4", "AVX2", "AVX3"}));
 }
 

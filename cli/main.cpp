@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "engine/run/run_loop.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/scene/problems.hpp"
+#include "engine/sph/simd_target.hpp"
 #include "engine/store/errors.hpp"
 
 namespace sluice {
@@ -51,12 +54,24 @@ int flushed(int code) {
       "what was printed is not whole: standard output takes no more (its disk may be full)");
 }
 
+/// SLUICE_SIMD speaks for the whole program and, through its environment, for all that it starts.
+void take_default_simd_target() {
+  const char* const wanted = std::getenv("SLUICE_SIMD");
+  if (wanted == nullptr || *wanted == '\0') return;
+  try {
+    set_default_simd_target(wanted);
+  } catch (const std::invalid_argument& error) {
+    throw CommandEnd(ExitCode::usage, fmt::format("SLUICE_SIMD: {}", error.what()));
+  }
+}
+
 int parse_and_run(CLI::App& app, int argc, char** argv) {
   try {
     if (argc > 1) {
       const std::string message = unknown_verb(app, argv[1]);
       if (!message.empty()) throw CommandEnd(ExitCode::usage, message);
     }
+    take_default_simd_target();
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& help_or_version) {

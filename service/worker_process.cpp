@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 // Nothing else of the service's environment, which may hold secrets, reaches a worker.
 constexpr std::array kPassedOn{
-    "PATH",         "LANG",         "LC_ALL",       "TZ", "LD_LIBRARY_PATH",
-    "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"};
+    "PATH",         "LANG",         "LC_ALL",        "TZ",         "LD_LIBRARY_PATH",
+    "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS", "SLUICE_SIMD"};
 
 [[noreturn]] void fail(std::string_view action, int error) {
   throw WorkerStartError(fmt::format("cannot start a worker: cannot {}: {}", action,

@@ -9,108 +9,125 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/run/advice.hpp"
 #include "engine/sph/crowding.hpp"
+#include "engine/sph/retired.hpp"
 
 namespace sluice {
 namespace {
 
 using Finding = std::optional<Breach>;
 
-constexpr std::string_view kSmallerStep =
-    "lower numerics.courant, or use the kick_drift_kick integrator with artificial viscosity and "
-    "density diffusion";
-
-constexpr std::string_view kSlowerFlow =
-    "raise material.sound_speed where the flow itself is that fast, else lower numerics.courant, "
-    "or use the kick_drift_kick integrator with artificial viscosity and density diffusion";
-
-Finding not_finite(const GuardLimits&, const StepFacts& facts) {
-  const bool finite = facts.extremes.finite && std::isfinite(facts.time_step);
-  if (finite) return {};
-  return Breach{std::numeric_limits<double>::quiet_NaN(), 0.0, kSmallerStep};
+/// So that a NaN is above every limit.
+Finding above(double found, double limit) {
+  if (found <= limit) return {};
+  return Breach{found, limit};
 }
 
-Finding too_dense(const GuardLimits& limits, const StepFacts& facts) {
-  const double ratio = 1.0 + facts.extremes.max_density_excess / limits.reference_density;
-  if (ratio <= limits.density_ratio_max) return {};
-  return Breach{ratio, limits.density_ratio_max,
-                "raise material.sound_speed, or lower numerics.courant"};
+double share_of(std::size_t count, const StepFacts& facts) {
+  return static_cast<double>(count) / static_cast<double>(facts.initial_particles);
 }
 
-Finding too_thin(const GuardLimits& limits, const StepFacts& facts) {
-  const double ratio = 1.0 + facts.extremes.min_density_excess / limits.reference_density;
-  if (ratio >= limits.density_ratio_min) return {};
-  return Breach{ratio, limits.density_ratio_min,
-                "raise material.sound_speed, or lower numerics.courant"};
+std::size_t leaked_in(const StepFacts& facts) {
+  return facts.retired[static_cast<std::size_t>(RetireCause::leaked)];
 }
 
-Finding too_fast(const GuardLimits& limits, const StepFacts& facts) {
-  if (facts.extremes.max_speed <= limits.speed) return {};
-  return Breach{facts.extremes.max_speed, limits.speed, kSlowerFlow};
+std::size_t excluded_in(const StepFacts& facts) {
+  std::size_t count = 0;
+  for (std::size_t cause = 0; cause < kRetireCauses; ++cause) {
+    if (is_exclusion(static_cast<RetireCause>(cause))) count += facts.retired[cause];
+  }
+  return count;
 }
 
-Finding step_collapsed(const GuardLimits& limits, const StepFacts& facts) {
-  if (facts.step == 0 || facts.time_step >= limits.time_step) return {};
-  return Breach{facts.time_step, limits.time_step,
-                "look for a particle that is thrown about: raise artificial viscosity, or lower "
-                "numerics.courant"};
+/// " (30 too dense, 2 too fast)"
+std::string kinds_of_excluded(const StepFacts& facts) {
+  std::string text;
+  for (std::size_t cause = 0; cause < kRetireCauses; ++cause) {
+    const auto kind = static_cast<RetireCause>(cause);
+    if (!is_exclusion(kind) || facts.retired[cause] == 0) continue;
+    text +=
+        fmt::format("{}{} {}", text.empty() ? " (" : ", ", facts.retired[cause], to_string(kind));
+  }
+  return text + ")";
 }
 
-Finding escaped(double share, const StepFacts& facts, std::string_view suggestion) {
-  const double found =
-      static_cast<double>(facts.leaked) / static_cast<double>(facts.initial_particles);
-  if (found <= share) return {};
-  return Breach{found, share, suggestion};
+Finding excluded_above(std::size_t count, double share, const StepFacts& facts) {
+  const auto all = static_cast<double>(facts.initial_particles);
+  Finding breach = above(static_cast<double>(count), GuardLimits::most_excluded(share, all));
+  if (breach) breach->detail = kinds_of_excluded(facts);
+  return breach;
+}
+
+Finding many_excluded(const GuardLimits& limits, const StepFacts& facts) {
+  return excluded_above(excluded_in(facts), limits.excluded_share, facts);
+}
+
+Finding many_excluded_at_once(const GuardLimits& limits, const StepFacts& facts) {
+  return excluded_above(facts.excluded_at_once, limits.excluded_share_at_once, facts);
+}
+
+/// Root mean square of what a particle of this energy has: of v for v^2/2, and to first order of
+/// c (rho - rho_0)/rho_0 for the internal energy.
+double root_mean_square(double energy, const GuardLimits& limits, const StepFacts& facts) {
+  const double mass = limits.method.particle_mass() * static_cast<double>(facts.particles);
+  return mass > 0.0 ? std::sqrt(2.0 * energy / mass) : 0.0;
+}
+
+Finding fast_as_a_whole(const GuardLimits& limits, const StepFacts& facts) {
+  if (!facts.energy) return {};
+  return above(root_mean_square(facts.energy->kinetic, limits, facts), limits.bulk_speed);
+}
+
+Finding compressed_as_a_whole(const GuardLimits& limits, const StepFacts& facts) {
+  if (!facts.energy) return {};
+  const double density =
+      root_mean_square(facts.energy->internal, limits, facts) / limits.method.sound_speed;
+  return above(density, limits.bulk_density);
 }
 
 Finding too_many_escaped(const GuardLimits& limits, const StepFacts& facts) {
-  return escaped(limits.leaked_share, facts,
-                 "clamp numerics.wall_pressure, lower numerics.courant, or widen the domain");
+  return above(share_of(leaked_in(facts), facts), limits.leaked_share);
 }
 
 Finding energy_grew(const GuardLimits& limits, const StepFacts& facts) {
   if (!facts.energy) return {};
   const GuardBaselines& base = facts.baselines;
-  const double growth = (*facts.energy - base.initial_energy) / base.energy_scale;
-  if (growth <= limits.energy_growth) return {};
-  return Breach{
-      growth, limits.energy_growth,
-      "when it grew slowly, the density diffusion molteni_colagrossi lifted fluid at rest: "
-      "use fourtakas; when it grew fast, lower numerics.courant, or use the "
-      "kick_drift_kick integrator with artificial viscosity and density diffusion"};
+  const double grown = facts.energy->total() + facts.energy_that_left - base.initial_energy;
+  return above(grown / base.energy_scale, limits.energy_growth);
 }
 
 Finding clumped(const GuardLimits& limits, const StepFacts& facts) {
-  if (facts.extremes.max_neighbours <= limits.neighbours) return {};
-  return Breach{static_cast<double>(facts.extremes.max_neighbours), limits.neighbours,
-                "particles clump: raise material.sound_speed, or lower numerics.courant"};
+  return above(facts.extremes.max_neighbours, limits.neighbours);
 }
 
 Finding fast(const GuardLimits& limits, const StepFacts& facts) {
-  if (facts.extremes.max_speed <= limits.speed_warning) return {};
-  return Breach{facts.extremes.max_speed, limits.speed_warning,
-                "the fluid is no longer weakly compressible: raise material.sound_speed"};
+  return above(facts.extremes.max_speed, limits.speed_warning);
 }
 
 Finding some_escaped(const GuardLimits& limits, const StepFacts& facts) {
-  return escaped(limits.leaked_share_warning, facts,
-                 "clamp numerics.wall_pressure, or lower numerics.courant");
+  return above(share_of(leaked_in(facts), facts), limits.leaked_share_warning);
+}
+
+Finding some_excluded(const GuardLimits& limits, const StepFacts& facts) {
+  return above(share_of(excluded_in(facts), facts), limits.excluded_share_warning);
 }
 
 // clang-format off
+constexpr std::string_view kEscaped = "share of particles that went into or through a solid or over the edge of the domain";
 constexpr std::array kFailing{
-    Guard{"a particle is not finite", Suspect::fastest, not_finite},
-    Guard{"speed above the sound speed (m/s)", Suspect::fastest, too_fast},
-    Guard{"density ratio rho/rho_0 too high", Suspect::densest, too_dense},
-    Guard{"density ratio rho/rho_0 too low", Suspect::lightest, too_thin},
-    Guard{"time step collapsed (s)", Suspect::fastest, step_collapsed},
-    Guard{"share of particles that left through a wall or the edge of the domain", {}, too_many_escaped},
-    Guard{"energy grew (share of the initial energy)", {}, energy_grew},
-    Guard{"neighbours of a particle", {}, clumped},
+    Guard{"particles excluded within the time that sound needs across the fluid", many_excluded_at_once, advice_to_steady},
+    Guard{"particles excluded since the start", many_excluded, advice_to_steady},
+    Guard{"mean speed of the fluid above half of the sound speed (m/s)", fast_as_a_whole, advice_to_stiffen},
+    Guard{"mean density of the fluid off rho_0 (share of it)", compressed_as_a_whole, advice_to_stiffen},
+    Guard{kEscaped, too_many_escaped, advice_to_hold},
+    Guard{"energy grew (share of the initial energy)", energy_grew, advice_to_conserve},
+    Guard{"neighbours of a particle, so that particles clump", clumped, advice_to_steady},
 };
 constexpr std::array kWarning{
-    Guard{"speed above 0.3 of the sound speed (m/s)", Suspect::fastest, fast},
-    Guard{"share of particles that left through a wall or the edge of the domain", {}, some_escaped},
+    Guard{"speed above 0.3 of the sound speed (m/s)", fast, advice_to_stiffen},
+    Guard{kEscaped, some_escaped, advice_to_hold},
+    Guard{"share of particles excluded", some_excluded, advice_to_steady},
 };
 // clang-format on
 
@@ -123,9 +140,8 @@ double height_of(const Particles& particles, std::size_t i, const Vec& gravity) 
 }  // namespace
 
 std::string Diagnosis::text() const {
-  std::string who = particle ? fmt::format(", particle {:.0f}", *particle) : "";
-  return fmt::format("{} at step {}, t = {:.6g} s{}: found {:.4g}, limit {:.4g}; {}", reason, step,
-                     time, who, value, limit, suggestion);
+  return fmt::format("{} at step {}, t = {:.6g} s: found {:.4g}, limit {:.4g}; {}", reason, step,
+                     time, value, limit, suggestion);
 }
 
 NumericalFailure::NumericalFailure(Diagnosis diagnosis)
@@ -133,16 +149,29 @@ NumericalFailure::NumericalFailure(Diagnosis diagnosis)
 
 GuardLimits GuardLimits::for_method(const Method& method) {
   GuardLimits limits;
-  limits.speed = method.sound_speed;
+  limits.method = method;
   limits.speed_warning = 0.3 * method.sound_speed;
-  const double usual_step = method.smoothing_length / method.sound_speed;
-  limits.time_step = 0.05 * usual_step * std::min(1.0, method.courant / 0.25);
+  limits.bulk_speed = 0.5 * method.sound_speed;
+  limits.bulk_density = 0.5 * Method::kDensityLeeway;
   // Fewer are never counted. That is seven times what the paper's support holds; wider supports get
   // the same margin.
   const double in_support = std::numbers::pi * std::pow(method.support() / method.spacing, 2);
   limits.neighbours = std::max<double>(kManyNeighbours, 7.0 * in_support);
-  limits.reference_density = method.reference_density;
   return limits;
+}
+
+double GuardLimits::most_excluded(double share, double particles) {
+  constexpr double kHandful = 8.0;
+  return std::max(share * particles, std::min(kHandful, 0.1 * particles));
+}
+
+double GuardLimits::crossing_time(const GuardBaselines& baselines) const {
+  return std::sqrt(baselines.initial_mass / method.reference_density) / method.sound_speed;
+}
+
+double energy_that_left(const Method& method, const Retired& retired) {
+  const Energy energy = energy_of(method, retired);
+  return is_exclusion(retired.cause) ? energy.potential : energy.total();
 }
 
 std::span<const Guard> failing_guards() { return kFailing; }
@@ -153,15 +182,12 @@ std::optional<Diagnosis> first_breach(std::span<const Guard> guards, const Guard
   for (const Guard& guard : guards) {
     const Finding breach = guard.breached(limits, facts);
     if (!breach) continue;
-    const bool blame = guard.suspect && facts.suspect_id;
-    return Diagnosis{
-        .reason = std::string(guard.reason),
-        .step = facts.step,
-        .time = facts.time,
-        .particle = blame ? std::optional(facts.suspect_id(*guard.suspect)) : std::nullopt,
-        .value = breach->value,
-        .limit = breach->limit,
-        .suggestion = std::string(breach->suggestion)};
+    return Diagnosis{.reason = std::string(guard.reason) + breach->detail,
+                     .step = facts.step,
+                     .time = facts.time,
+                     .value = breach->value,
+                     .limit = breach->limit,
+                     .suggestion = guard.advice(limits.method)};
   }
   return {};
 }
@@ -177,10 +203,13 @@ GuardBaselines initial_baselines(const Method& method, const SolverState& state,
   for (std::size_t i = 0; i < particles.size(); ++i) {
     lifted += height_of(particles, i, method.gravity) - lowest;
   }
+  double left = 0.0;
+  for (const Retired& retired : state.retired) left += energy_that_left(method, retired);
   GuardBaselines base;
-  base.initial_mass = static_cast<double>(particles.size()) * method.particle_mass();
-  base.initial_energy = energy.total();
-  base.highest_energy = energy.total();
+  base.initial_mass =
+      static_cast<double>(particles.size() + state.retired.size()) * method.particle_mass();
+  base.initial_energy = energy.total() + left;
+  base.highest_energy = base.initial_energy;
   const double brought =
       energy.kinetic + energy.internal + method.particle_mass() * method.gravity.norm() * lifted;
   const double slow = method.sound_speed / 100.0;

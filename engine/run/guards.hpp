@@ -1,8 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -18,10 +18,9 @@ namespace sluice {
 struct Diagnosis {
   std::string reason;
   std::uint64_t step = 0;
-  double time = 0.0;               ///< s
-  std::optional<double> particle;  ///< id, where one particle is to blame
-  double value = 0.0;              ///< what was found, in the unit that `reason` names
-  double limit = 0.0;              ///< what was allowed
+  double time = 0.0;   ///< s
+  double value = 0.0;  ///< what was found, in the unit that `reason` names
+  double limit = 0.0;  ///< what was allowed
   std::string suggestion;
 
   [[nodiscard]] std::string text() const;
@@ -39,47 +38,60 @@ class NumericalFailure : public std::runtime_error {
 
 /// Limits that follow from the method, fixed for a run.
 struct GuardLimits {
-  double density_ratio_min = 0.7;  ///< rho / rho_0
-  double density_ratio_max = 1.3;
-  double speed = 0.0;          ///< m/s: the sound speed c
   double speed_warning = 0.0;  ///< m/s: 0.3 c, where weak compressibility ends to be weak
-  double time_step = 0.0;      ///< s: 0.05 h/c, less for a Courant number below the paper's 0.25
   double leaked_share = 0.01;
   double leaked_share_warning = 0.001;
-  double energy_growth = 0.05;     ///< of GuardBaselines::energy_scale
-  double neighbours = 0.0;         ///< 200, more where the support itself holds many particles
-  double reference_density = 0.0;  ///< kg/m^3
+  double excluded_share = 0.005;           ///< of the particles, since the start
+  double excluded_share_at_once = 0.001;   ///< within the time that sound needs across the fluid
+  double excluded_share_warning = 0.0001;  ///< since the start
+  double bulk_speed = 0.0;                 ///< m/s: root mean square, half of what one may have
+  double bulk_density = 0.0;    ///< of (rho - rho_0)/rho_0: root mean square, half of the same
+  double energy_growth = 0.05;  ///< of GuardBaselines::energy_scale
+  double neighbours = 0.0;      ///< 200, more where the support itself holds many particles
+  Method method;                ///< of which the advice is
 
   [[nodiscard]] static GuardLimits for_method(const Method& method);
+
+  /// So many of `particles` may be excluded: the share of them, in a small run eight or, in a tiny
+  /// one, a tenth of all: a handful says nothing of the fluid as a whole.
+  [[nodiscard]] static double most_excluded(double share, double particles);
+  /// Time that sound needs across a square of the fluid's mass, s.
+  [[nodiscard]] double crossing_time(const GuardBaselines& baselines) const;
 };
 
 /// What the guards look at after a step.
 struct StepFacts {
   std::uint64_t step = 0;
-  double time = 0.0;       ///< s
-  double time_step = 0.0;  ///< s, 0 before the first step
+  double time = 0.0;  ///< s
   Extremes extremes;
-  std::size_t leaked =
-      0;  ///< particles that passed through a wall so far; overtopping is no failure
+  /// Particles that left, by cause; overtopping is no failure.
+  std::array<std::size_t, kRetireCauses> retired{};
+  std::size_t excluded_at_once = 0;  ///< within the last GuardLimits::crossing_time
   std::size_t initial_particles = 0;
-  std::optional<double> energy;  ///< J/m, where it was summed
+  std::size_t particles = 0;
+  std::optional<Energy> energy;   ///< where it was summed
+  double energy_that_left = 0.0;  ///< J/m, see energy_that_left()
   GuardBaselines baselines;
-  std::function<double(Suspect)> suspect_id;  ///< asked only after a breach
 };
+
+/// What removed particles took along of the energy that the guard watches, J/m: all that was in
+/// those that went over a rim or leaked; of an excluded one the potential energy alone, for its
+/// speed or density came from nowhere, and its kind is judged by its number.
+[[nodiscard]] double energy_that_left(const Method& method, const Retired& retired);
 
 /// Energy is summed, and its guard checked, every this many steps.
 inline constexpr std::uint64_t kEnergyInterval = 50;
 
-/// One guard: `breached` returns the value found, the limit and what to do, or nothing.
+/// One guard: `breached` returns the value found and the limit, or nothing.
 struct Breach {
   double value = 0.0;
   double limit = 0.0;
-  std::string_view suggestion;
+  std::string detail = {};  ///< goes behind the reason
 };
 struct Guard {
   std::string_view reason;
-  std::optional<Suspect> suspect;  ///< the particle to blame, where it is one
   std::optional<Breach> (*breached)(const GuardLimits&, const StepFacts&);
+  std::string (*advice)(const Method&);  ///< what to do in a scene with these terms
 };
 
 /// All guards that end a run, in the order in which they are asked: a cause before its

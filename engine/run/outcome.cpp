@@ -68,6 +68,14 @@ Json extremes_json(const Outcome& outcome) {
               {"energy_scale", seen.energy_scale}};
 }
 
+Json departed_json(const Departed& departed) {
+  return Json{{"mass", departed.mass},
+              {"momentum", {departed.momentum.x(), departed.momentum.y()}},
+              {"kinetic_energy", departed.energy.kinetic},
+              {"potential_energy", departed.energy.potential},
+              {"internal_energy", departed.energy.internal}};
+}
+
 Json digests_json(const Outcome& outcome) {
   Json series = Json::object();
   for (const auto& [name, digest] : outcome.series_digests) series[name] = digest;
@@ -101,8 +109,13 @@ Outcome describe_simulation(const Simulation& simulation) {
   outcome.end_time = simulation.scene().end_time;
   outcome.particles = solver.particle_count();
   outcome.wall_particles = solver.wall_count();
-  outcome.leaked = simulation.leaked();
-  outcome.overtopped = simulation.overtopped();
+  for (std::size_t i = 0; i < kRetireCauses; ++i) {
+    const auto cause = static_cast<RetireCause>(i);
+    Departed& kind = is_exclusion(cause)                ? outcome.excluded
+                     : cause == RetireCause::overtopped ? outcome.overtopped
+                                                        : outcome.leaked;
+    kind.merge(simulation.departed(cause));
+  }
   outcome.extremes = simulation.baselines();
   outcome.reference_density = simulation.scene().method.reference_density;
   for (const Series& series : split(simulation.samples())) {
@@ -126,7 +139,12 @@ Json to_json(const Outcome& outcome) {
               {"end_time", outcome.end_time},
               {"particles", outcome.particles},
               {"wall_particles", outcome.wall_particles}};
-  object["retired"] = Json{{"overtopped", outcome.overtopped}, {"leaked", outcome.leaked}};
+  object["retired"] = Json{{"overtopped", outcome.overtopped.count},
+                           {"leaked", outcome.leaked.count},
+                           {"excluded", outcome.excluded.count}};
+  object["taken_along"] = Json{{"overtopped", departed_json(outcome.overtopped)},
+                               {"leaked", departed_json(outcome.leaked)},
+                               {"excluded", departed_json(outcome.excluded)}};
   object["extremes"] = extremes_json(outcome);
   object["digests"] = digests_json(outcome);
   object["bit_exact"] = outcome.bit_exact;
@@ -149,9 +167,9 @@ std::string summary_text(const Outcome& outcome) {
     text += fmt::format("  {:<20} {:>9.3f} s {:>6.1f} %\n", line.name, line.seconds,
                         100.0 * share(line.seconds, account));
   }
-  text +=
-      fmt::format("  {} fluid and {} wall particles, {} overtopped, {} leaked\n", outcome.particles,
-                  outcome.wall_particles, outcome.overtopped, outcome.leaked);
+  text += fmt::format("  {} fluid and {} wall particles, {} overtopped, {} leaked, {} excluded\n",
+                      outcome.particles, outcome.wall_particles, outcome.overtopped.count,
+                      outcome.leaked.count, outcome.excluded.count);
   if (!outcome.physics_digest.empty()) {
     text += fmt::format("  physics SHA-256 {}{}\n", outcome.physics_digest,
                         outcome.bit_exact ? "" : " (went on with another build or SIMD target)");

@@ -45,8 +45,9 @@ struct Outcome {
   double end_time = 0.0;  ///< s
   std::size_t particles = 0;
   std::size_t wall_particles = 0;
-  std::size_t leaked = 0;
-  std::size_t overtopped = 0;
+  Departed overtopped;
+  Departed leaked;
+  Departed excluded;
   GuardBaselines extremes;
   double reference_density = 0.0;  ///< kg/m^3
   std::string physics_digest;      ///< SHA-256; empty after a numerical failure

@@ -45,6 +45,9 @@ struct Progress {
   double time_step = 0.0;   ///< s
   StepLimit step_limit = StepLimit::sound;
   std::size_t particles = 0;
+  std::size_t overtopped = 0;
+  std::size_t leaked = 0;
+  std::size_t excluded = 0;
   double max_speed = 0.0;                ///< m/s
   double elapsed = 0.0;                  ///< wall time of this attempt, s
   std::optional<double> checkpoint_age;  ///< s since the last checkpoint was safe

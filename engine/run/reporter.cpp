@@ -50,7 +50,7 @@ std::string describe_start(std::string_view name, const Json& fields) {
 /// What a person is told; nothing where the bar or the closing account says it.
 std::string describe(std::string_view name, const Json& fields) {
   if (name == "started" || name == "resumed") return describe_start(name, fields);
-  if (name != "warning") return {};
+  if (name != "warning" && name != "excluded" && name != "leaked") return {};
   return fmt::format("{}: {}", name, fields.value("message", ""));
 }
 
@@ -62,6 +62,9 @@ Json to_json(const Progress& progress) {
               {"end_time", progress.end_time},
               {"fraction", progress.fraction()},
               {"particles", progress.particles},
+              {"overtopped", progress.overtopped},
+              {"leaked", progress.leaked},
+              {"excluded", progress.excluded},
               {"time_step", progress.time_step},
               {"step_limit", to_string(progress.step_limit)},
               {"max_speed", progress.max_speed},
@@ -77,13 +80,9 @@ Json to_json(const Progress& progress) {
 }
 
 Json to_json(const Diagnosis& diagnosis) {
-  return Json{{"reason", diagnosis.reason},
-              {"step", diagnosis.step},
-              {"time", diagnosis.time},
-              {"particle", optional_number(diagnosis.particle)},
-              {"value", diagnosis.value},
-              {"limit", diagnosis.limit},
-              {"suggestion", diagnosis.suggestion}};
+  return Json{{"reason", diagnosis.reason}, {"step", diagnosis.step},
+              {"time", diagnosis.time},     {"value", diagnosis.value},
+              {"limit", diagnosis.limit},   {"suggestion", diagnosis.suggestion}};
 }
 
 void JsonReporter::progress(const Progress& progress) { event("progress", to_json(progress)); }

@@ -10,6 +10,7 @@
 #include "engine/run/build_id.hpp"
 #include "engine/run/job_writer.hpp"
 #include "engine/run/machine_name.hpp"
+#include "engine/run/removal_news.hpp"
 #include "engine/run/signals.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/run/stopwatch.hpp"
@@ -31,6 +32,7 @@ class RunLoop {
         reporter_(&reporter),
         simulation_(&simulation),
         writer_(folder, options, reporter),
+        removals_(simulation),
         first_step_(simulation.solver().step_count()),
         first_time_(simulation.solver().time()) {}
 
@@ -83,6 +85,7 @@ class RunLoop {
   }
 
   void report() {
+    removals_.tell(*simulation_, *reporter_);
     for (const Diagnosis& warning : simulation_->take_warnings()) {
       Json fields = to_json(warning);
       fields["message"] = warning.text();
@@ -105,6 +108,9 @@ class RunLoop {
     progress.time_step = solver.time_step();
     progress.step_limit = solver.step_limit();
     progress.particles = solver.particle_count();
+    progress.overtopped = simulation_->overtopped();
+    progress.leaked = simulation_->leaked();
+    progress.excluded = simulation_->excluded();
     progress.max_speed = solver.extremes().max_speed;
     progress.elapsed = now;
     progress.checkpoint_age = writer_.checkpoint_age();
@@ -114,6 +120,7 @@ class RunLoop {
 
   /// The samples up to the failure help to understand it; the checkpoints stay as they are.
   Outcome fail(const NumericalFailure& failure) {
+    removals_.tell(*simulation_, *reporter_);
     try {
       writer_.finish_series(*simulation_);
     } catch (const StorageError& error) {
@@ -145,6 +152,7 @@ class RunLoop {
   Stopwatch clock_;
   CoreStopwatch core_clock_;
   JobWriter writer_;
+  RemovalNews removals_;
   RateMeter rate_;
   std::uint64_t first_step_;
   double first_time_;
@@ -154,12 +162,14 @@ class RunLoop {
 
 Json started_fields(const Simulation& simulation, const JobFolder& folder) {
   const Solver& solver = simulation.solver();
+  // A few may be gone before the first step: they have started as well.
+  const std::size_t gone = solver.step_count() == 0 ? solver.retired().size() : 0;
   return Json{{"scene", simulation.scene().name},
               {"folder", folder.name().string()},
               {"step", solver.step_count()},
               {"time", solver.time()},
               {"end_time", simulation.scene().end_time},
-              {"particles", solver.particle_count()},
+              {"particles", solver.particle_count() + gone},
               {"wall_particles", solver.wall_count()},
               {"threads", solver.threads()},
               {"simd_target", solver.simd_target()},

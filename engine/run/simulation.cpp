@@ -12,6 +12,7 @@
 #include "engine/run/schedule.hpp"
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
+#include "engine/scene/leaks.hpp"
 #include "engine/store/digest.hpp"
 #include "engine/store/errors.hpp"
 
@@ -20,11 +21,11 @@ namespace {
 
 Solver start_solver(const Scene& scene, const Execution& execution) {
   const InitialParticles initial = create_particles(scene);
-  return Solver(scene.method, initial.state, initial.walls, execution);
+  return Solver(method_with_solids(scene), initial.state, initial.walls, execution);
 }
 
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
-  return Solver(scene.method, state, create_particles(scene).walls, execution);
+  return Solver(method_with_solids(scene), state, create_particles(scene).walls, execution);
 }
 
 void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
@@ -99,6 +100,7 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       solver_(start_solver(scene_, execution)),
       samples_(sensors_.empty_tables()) {
   const Energy energy = solver_.energy();
+  count_retired();
   baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
   baselines_.min_density_excess_seen = solver_.extremes().min_density_excess;
   baselines_.max_density_excess_seen = solver_.extremes().max_density_excess;
@@ -129,10 +131,13 @@ void Simulation::step() {
   count_retired();
   note_extremes();
 
-  std::optional<double> energy;
+  std::optional<Energy> energy;
   const bool periodic = solver_.step_count() % kEnergyInterval == 0;
-  if (periodic || finished()) energy = solver_.energy().total();
-  if (periodic) baselines_.highest_energy = std::max(baselines_.highest_energy, *energy);
+  if (periodic || finished()) energy = solver_.energy();
+  if (periodic) {
+    baselines_.highest_energy =
+        std::max(baselines_.highest_energy, energy->total() + energy_that_left_);
+  }
 
   const StepFacts now = facts(energy);
   if (auto broken = first_breach(failing_guards(), limits_, now)) {
@@ -144,7 +149,7 @@ void Simulation::step() {
 }
 
 std::optional<Diagnosis> Simulation::violation() const {
-  return first_breach(failing_guards(), limits_, facts(solver_.energy().total()));
+  return first_breach(failing_guards(), limits_, facts(solver_.energy()));
 }
 
 Checkpoint Simulation::checkpoint() const {
@@ -176,7 +181,10 @@ std::vector<Diagnosis> Simulation::take_warnings() { return std::exchange(warnin
 void Simulation::count_retired() {
   const std::vector<Retired>& retired = solver_.retired();
   for (; retired_counted_ < retired.size(); ++retired_counted_) {
-    ++(retired[retired_counted_].cause == RetireCause::leaked ? leaked_ : overtopped_);
+    const Retired& one = retired[retired_counted_];
+    departed_[static_cast<std::size_t>(one.cause)].add(scene_.method, one);
+    if (is_exclusion(one.cause)) excluded_at_.push_back(one.time);
+    energy_that_left_ += energy_that_left(scene_.method, one);
   }
 }
 
@@ -209,17 +217,22 @@ void Simulation::note_warnings(const StepFacts& facts) {
   }
 }
 
-StepFacts Simulation::facts(std::optional<double> energy) const {
+StepFacts Simulation::facts(std::optional<Energy> energy) const {
   StepFacts now;
   now.step = solver_.step_count();
   now.time = solver_.time();
-  now.time_step = solver_.time_step();
   now.extremes = solver_.extremes();
-  now.leaked = leaked_;
+  for (std::size_t cause = 0; cause < kRetireCauses; ++cause) {
+    now.retired[cause] = departed_[cause].count;
+  }
+  const double lately = solver_.time() - limits_.crossing_time(baselines_);
+  now.excluded_at_once = static_cast<std::size_t>(
+      excluded_at_.end() - std::lower_bound(excluded_at_.begin(), excluded_at_.end(), lately));
   now.initial_particles = initial_particles();
+  now.particles = solver_.particle_count();
   now.energy = energy;
+  now.energy_that_left = energy_that_left_;
   now.baselines = baselines_;
-  now.suspect_id = [this](Suspect suspect) { return solver_.suspect_id(suspect); };
   return now;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "engine/run/guards.hpp"
 #include "engine/run/sampling.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/sph/retired.hpp"
 #include "engine/sph/solver.hpp"
 #include "engine/store/checkpoint.hpp"
 
@@ -55,8 +57,13 @@ class Simulation {
   [[nodiscard]] const Solver& solver() const { return solver_; }
   [[nodiscard]] const std::vector<SampleTable>& samples() const { return samples_; }
   [[nodiscard]] const GuardBaselines& baselines() const { return baselines_; }
-  [[nodiscard]] std::size_t leaked() const { return leaked_; }
-  [[nodiscard]] std::size_t overtopped() const { return overtopped_; }
+  /// What particles took along that left for this cause.
+  [[nodiscard]] const Departed& departed(RetireCause cause) const {
+    return departed_[static_cast<std::size_t>(cause)];
+  }
+  [[nodiscard]] std::size_t leaked() const { return departed(RetireCause::leaked).count; }
+  [[nodiscard]] std::size_t overtopped() const { return departed(RetireCause::overtopped).count; }
+  [[nodiscard]] std::size_t excluded() const { return excluded_at_.size(); }
   [[nodiscard]] bool bit_exact() const { return bit_exact_; }
   /// Since construction: sum of the fluid particles over all steps, and seconds spent on samples.
   [[nodiscard]] std::uint64_t particle_steps() const { return particle_steps_; }
@@ -67,7 +74,7 @@ class Simulation {
   void note_extremes();
   void sample();
   void note_warnings(const StepFacts& facts);
-  [[nodiscard]] StepFacts facts(std::optional<double> energy) const;
+  [[nodiscard]] StepFacts facts(std::optional<Energy> energy) const;
   [[nodiscard]] std::size_t initial_particles() const;
 
   Scene scene_;
@@ -82,8 +89,9 @@ class Simulation {
   bool failed_ = false;
 
   std::size_t retired_counted_ = 0;
-  std::size_t leaked_ = 0;
-  std::size_t overtopped_ = 0;
+  std::array<Departed, kRetireCauses> departed_;
+  std::vector<double> excluded_at_;  ///< s, increasing
+  double energy_that_left_ = 0.0;    ///< J/m, see guards.hpp
   std::uint64_t particle_steps_ = 0;
   double sample_seconds_ = 0.0;
   std::vector<Diagnosis> warnings_;

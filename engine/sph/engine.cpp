@@ -11,6 +11,7 @@
 #include "engine/sph/crowding.hpp"
 #include "engine/sph/dummy_particles.hpp"
 #include "engine/sph/kernel.hpp"
+#include "engine/sph/retired.hpp"
 #include "engine/sph/tracks.hpp"
 
 namespace sluice {
@@ -20,6 +21,10 @@ constexpr double kListSlack = 1e-3;  // lists are longer by more than any roundi
 
 // The order in memory is state: when it is renewed is a function of the step alone.
 constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
+
+// Solids are looked into by step as well: sound goes not much farther meanwhile than a solid must
+// be thick.
+constexpr double kSolidInterval = 4.0;  // h/c at the largest step
 
 constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 
@@ -54,6 +59,12 @@ double stress_across_wall(const Method& m) {
     }
   }
   return dx * dx * dx * sum;
+}
+
+/// Whether it is the step for what is done every so many h/c at the largest step.
+bool is_step_for(std::uint64_t step, double interval, double courant) {
+  const double steps = std::max(1.0, std::round(interval / courant));
+  return step % static_cast<std::uint64_t>(steps) == 0;
 }
 
 /// What the sums over pairs leave out: the volume of a particle in h^2 times the constant of grad
@@ -129,7 +140,8 @@ class Engine final : public Solver::Impl {
 
   // Order in memory.
   void sort();
-  void retire();
+  bool retire();
+  [[nodiscard]] bool somebody_in_a_solid();
   void reorder(Order order);
   void bind();
   void make_lists();
@@ -141,7 +153,7 @@ class Engine final : public Solver::Impl {
   void advance_tracks(double duration);
   void compare_with_tracks(const ParticleSpan& p, Motion& seen);
   void keep_lists(const Motion& seen);
-  [[nodiscard]] bool order_due() const;
+  [[nodiscard]] bool order_due();
   void sum_wall_pressure();
   void reinitialise();
   double& seconds_of(Pass pass) { return pass_seconds[static_cast<std::size_t>(pass)]; }
@@ -159,7 +171,6 @@ class Engine final : public Solver::Impl {
   void measure();
   void write_pairs(const ParticleSpan& p);
   void note_motion(const Motion& seen);
-  [[nodiscard]] bool places_are_finite() const;
   void choose_time_step();
   [[nodiscard]] Shift shift_of_step() const;
   [[nodiscard]] bool shifting_due() const;
@@ -187,7 +198,7 @@ class Engine final : public Solver::Impl {
   Tracks<T> tracks_;
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
   ChunkSums<T> sums_;     // of fluid_to_fluid_
-  bool outside_ = false;  // a particle is to be retired
+  bool leaving_ = false;  // a particle is to be retired
 
   DummyParticles<T> walls_;
 };
@@ -233,6 +244,8 @@ void Engine<T>::load(const SolverState& state) {
   }
   // Sorting what is in order keeps it, so this also restores the slots of a state that was taken.
   particles = std::move(source);
+  // Before it spoils what others feel. A state that was taken holds nobody who is to be retired.
+  if (fresh) retire();
   reorder(sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id));
   walls_.lift(method, time);
   bind();
@@ -320,11 +333,27 @@ PairScales Engine<T>::scales() const {
 
 // Order in memory.
 
+template <typename T>
+bool Engine<T>::somebody_in_a_solid() {
+  struct Seen {
+    bool somebody = false;
+    void merge(const Seen& other) { somebody |= other.somebody; }
+  };
+  return for_chunks<Seen>([&](const ParticleSpan& p, Seen& seen) {
+           for (std::size_t s = p.begin; s < p.end; ++s) {
+             seen.somebody |= p.id[s] >= 0.0 && method.in_solid({p.x[s], p.y[s]}, time);
+           }
+         })
+      .somebody;
+}
+
 /// Whether particles are to be retired, or their order has served its time.
 template <typename T>
-bool Engine<T>::order_due() const {
-  const double steps = std::max(1.0, std::round(kOrderLifetime / method.courant));
-  return outside_ || step_count % static_cast<std::uint64_t>(steps) == 0;
+bool Engine<T>::order_due() {
+  if (method.in_solid && is_step_for(step_count, kSolidInterval, method.courant)) {
+    leaving_ |= somebody_in_a_solid();
+  }
+  return leaving_ || is_step_for(step_count, kOrderLifetime, method.courant);
 }
 
 template <typename T>
@@ -348,8 +377,7 @@ void Engine<T>::keep_lists(const Motion& seen) {
 template <typename T>
 void Engine<T>::sort() {
   const PassClock clock(seconds_of(Pass::sort));
-  const bool fewer = outside_;
-  if (fewer) retire();
+  const bool fewer = leaving_ && retire();
   reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id));
   particles.x_sorted = particles.x;
   particles.y_sorted = particles.y;
@@ -359,23 +387,22 @@ void Engine<T>::sort() {
   // From here on all is as a solver finds it that goes on with this state: the next step sees wall
   // pressures summed in this order, and nothing of what left.
   if (method.integrator == Integrator::kick_drift_kick) sum_wall_pressure();
-  if (!fewer) return;
-  const bool finite = extremes.finite;
-  measure();
-  extremes.finite = extremes.finite && finite;
+  if (fewer) measure();
 }
 
-/// Whoever is outside is no particle any more.
+/// Takes out who is no particle of the fluid any more; whether there was any.
 template <typename T>
-void Engine<T>::retire() {
-  for (std::size_t s = 0; s < layout.slots(); ++s) {
-    if (particles.id[s] < 0.0 || method.keeps(particles.position(s))) continue;
-    const bool over = method.wall_top && particles.y[s] >= *method.wall_top;
-    retired.push_back({particles.id[s], over ? RetireCause::overtopped : RetireCause::leaked,
-                       step_count, time, particles.x[s], particles.y[s]});
+bool Engine<T>::retire() {
+  const std::size_t before = particle_count;
+  for (std::size_t s = 0; s < particles.size(); ++s) {
+    if (particles.id[s] < 0.0) continue;
+    const auto cause = cause_to_retire(method, particles, s, time);
+    if (!cause) continue;
+    retired.push_back(record_of(particles, s, *cause, step_count, time));
     particles.id[s] = kNobody;
     --particle_count;
   }
+  return particle_count < before;
 }
 
 template <typename T>
@@ -552,24 +579,15 @@ void Engine<T>::reinitialise() {
 }
 
 template <typename T>
-bool Engine<T>::places_are_finite() const {
-  for (std::size_t s = 0; s < layout.slots(); ++s) {
-    if (particles.id[s] >= 0.0 && !particles.position(s).allFinite()) return false;
-  }
-  return true;
-}
-
-template <typename T>
 void Engine<T>::note_motion(const Motion& seen) {
   extremes.max_speed = std::sqrt(seen.speed_sq);
   extremes.min_density_excess = particle_count > 0 ? seen.min_density_excess : 0.0;
   extremes.max_density_excess = particle_count > 0 ? seen.max_density_excess : 0.0;
-  extremes.finite = seen.finite && (!seen.outside || places_are_finite());
   if (method.integrator == Integrator::kick_drift_kick) {
     extremes.max_acceleration = std::sqrt(seen.acceleration_sq);
   }
   extremes.max_x = seen.max_x;
-  outside_ = seen.outside;
+  leaving_ = seen.leaving;
 }
 
 template <typename T>
@@ -587,14 +605,15 @@ void Engine<T>::write_pairs(const ParticleSpan& p) {
   sweeps_.updates.write_densities(p, scales_, pairs_);
 }
 
-/// eq. 18 with its unit mended, and the force limit: dt <= C h/(c + |v|), dt <= 0.25 sqrt(h/|a|).
+/// eq. 18 with its unit mended, and the force limit: dt <= C h/(c + |v|), dt <= 0.25 sqrt(h/|a|),
+/// but for the least step.
 template <typename T>
 void Engine<T>::choose_time_step() {
   const double h = method.smoothing_length;
   const double sound = method.courant * h / (method.sound_speed + extremes.max_speed);
   const double force = kForceCourant * std::sqrt(h / extremes.max_acceleration);
   step_limit = force < sound ? StepLimit::force : StepLimit::sound;
-  time_step = std::min(force, sound);
+  time_step = std::max(method.least_time_step(), std::min(force, sound));
 }
 
 template <typename T>

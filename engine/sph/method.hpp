@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -124,10 +126,31 @@ struct Method {
   double rim_left = -std::numeric_limits<double>::infinity();
   double rim_right = std::numeric_limits<double>::infinity();
 
+  /// m; what is outside of the room and below this height is deep in a wall of the tank. Of an open
+  /// tank that is a little below wall_top: what comes over a rim may lie down on it.
+  Box room{Vec::Constant(-std::numeric_limits<double>::infinity()),
+           Vec::Constant(std::numeric_limits<double>::infinity())};
+  double walls_reach = std::numeric_limits<double>::infinity();
+  /// Whether a place is in an obstacle or in the gate at time t; empty: there is none. Asked once
+  /// in a while for each particle, on any thread.
+  std::function<bool(const Vec&, double t)> in_solid;
+
+  /// A particle is excluded whose density is farther than this from rho_0, over rho_0.
+  static constexpr double kDensityLeeway = 0.3;
+  [[nodiscard]] double most_density_excess() const { return kDensityLeeway * reference_density; }
+
+  /// No step is shorter, s: 0.05 h/c, in proportion less for a Courant number below the paper's
+  /// 0.25. Only an acceleration of more than 25 c^2/h asks for less, and a particle that has it is
+  /// faster than sound after such a step, and excluded: it does not hold up all others.
+  [[nodiscard]] double least_time_step() const {
+    return 0.05 * std::min(1.0, courant / 0.25) * smoothing_length / sound_speed;
+  }
+
   /// Whether a particle there stays in the run.
   [[nodiscard]] bool keeps(const Vec& p) const {
     const bool over = wall_top && p.y() >= *wall_top && !(p.x() >= rim_left && p.x() <= rim_right);
-    return domain.contains(p) && !over;
+    const bool in_wall = p.y() < walls_reach && !room.contains(p);
+    return domain.contains(p) && !over && !in_wall;
   }
   /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
   [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }

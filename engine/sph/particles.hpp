@@ -78,17 +78,34 @@ inline constexpr std::array kFields{
   return false;
 }
 
-/// Why a particle left the sums.
-enum class RetireCause { overtopped, leaked };
+/// Why a particle left the sums: where it went, or, from not_finite on, because it became what the
+/// scheme cannot hold, and was excluded.
+enum class RetireCause {
+  overtopped,  ///< over the rim of an open tank
+  leaked,      ///< into or through a solid, or over the edge of the domain
+  not_finite,  ///< a place, velocity or density that is no number
+  too_fast,    ///< than sound
+  too_dense,   ///< rho/rho_0 above 1 + Method::kDensityLeeway
+  too_thin,    ///< rho/rho_0 below 1 - Method::kDensityLeeway
+};
+inline constexpr std::size_t kRetireCauses = 6;
+[[nodiscard]] constexpr bool is_exclusion(RetireCause cause) {
+  return cause >= RetireCause::not_finite;
+}
+[[nodiscard]] std::string_view to_string(RetireCause cause);
 
-/// A particle that left the domain box.
+/// A particle that left the sums, as it was then. What was not finite is 0, a place that of the
+/// last sort. Velocities and densities are 0 in what builds before the exclusion wrote.
 struct Retired {
   double id = 0;
   RetireCause cause = RetireCause::leaked;
   std::uint64_t step = 0;
-  double time = 0.0;  ///< s
-  double x = 0.0;     ///< m
-  double y = 0.0;     ///< m
+  double time = 0.0;            ///< s
+  double x = 0.0;               ///< m
+  double y = 0.0;               ///< m
+  double vx = 0.0;              ///< m/s
+  double vy = 0.0;              ///< m/s
+  double density_excess = 0.0;  ///< kg/m^3
 };
 
 /// Everything the solver needs to go on as if it had never stopped.

@@ -20,6 +20,12 @@ std::vector<std::int64_t> target_bits() {
   return bits;
 }
 
+/// "" for the best.
+std::string& default_target() {
+  static std::string target;
+  return target;
+}
+
 }  // namespace
 
 std::vector<std::string> simd_targets() {
@@ -28,11 +34,17 @@ std::vector<std::string> simd_targets() {
   return names;
 }
 
-void with_simd_target(const std::string& target, const std::function<void()>& body) {
+void set_default_simd_target(const std::string& target) {
+  with_simd_target(target, [] {});
+  default_target() = target;
+}
+
+void with_simd_target(const std::string& asked, const std::function<void()>& body) {
   // Highway's choice is one per process.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
 
+  const std::string target = asked.empty() ? default_target() : asked;
   std::string known;
   for (const std::int64_t bits : target_bits()) {
     const std::string name = hwy::TargetName(bits);

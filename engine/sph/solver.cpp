@@ -1,8 +1,6 @@
 #include "engine/sph/solver.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "engine/sph/engine.hpp"
 
@@ -61,26 +59,6 @@ SolverState Solver::state() const {
     }
   }
   return out;
-}
-
-double Solver::suspect_id(Suspect suspect) const {
-  const Particles& p = impl_->particles;
-  const auto guilt = [&](std::size_t s) {
-    if (suspect == Suspect::fastest) return p.velocity(s).squaredNorm();
-    return suspect == Suspect::densest ? p.density_excess[s] : -p.density_excess[s];
-  };
-  double most = -std::numeric_limits<double>::infinity();
-  double id = -1.0;
-  for (std::size_t s = 0; s < p.size(); ++s) {
-    if (p.id[s] < 0.0) continue;
-    const double sum = p.x[s] + p.y[s] + p.velocity(s).squaredNorm() + p.density_excess[s];
-    if (!std::isfinite(sum)) return p.id[s];
-    if (guilt(s) > most) {
-      most = guilt(s);
-      id = p.id[s];
-    }
-  }
-  return id;
 }
 
 Energy Solver::energy() const { return impl_->energy(); }

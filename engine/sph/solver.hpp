@@ -38,13 +38,9 @@ struct Extremes {
   double min_density_excess = 0.0;   ///< kg/m^3
   double max_density_excess = 0.0;   ///< kg/m^3
   double max_x = 0.0;                ///< m
-  bool finite = true;                ///< no NaN and no infinity in position, velocity and density
   std::uint32_t max_neighbours = 0;  ///< of one particle, counted at a sort
                                      ///< that finds lists long enough for more than 200, else 0
 };
-
-/// Which particle a guard asks for.
-enum class Suspect { fastest, lightest, densest };
 
 /// A value estimated from the fluid around a point, with the kernel sum that carried it.
 struct Probe {
@@ -83,8 +79,6 @@ class Solver {
 
   /// A copy of the state, particles in their order.
   [[nodiscard]] SolverState state() const;
-  /// Id of a particle that is not finite, else of the suspect; -1 without particles.
-  [[nodiscard]] double suspect_id(Suspect suspect) const;
 
   /// Calls body(i) for each i in [0, count) on the solver's threads, for sensors: `body` may ask
   /// for anything of the point probes below. It must not throw, for an exception ends the process,

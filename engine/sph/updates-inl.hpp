@@ -263,13 +263,20 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   V low = hn::Set(d, 1e300);
   V high = hn::Set(d, -1e300);
   V front = hn::Set(d, -1e300);
-  auto outside = hn::FirstN(d, 0);
-  auto broken = hn::FirstN(d, 0);
-  // As Method::keeps.
+  auto leaving = hn::FirstN(d, 0);
+  // As cause_to_retire(). All comparisons are false for a NaN.
+  const V sound_sq = hn::Set(d, method.sound_speed * method.sound_speed);
+  const V most_excess = hn::Set(d, method.most_density_excess());
   const Box& domain = method.domain;
+  const Box& room = method.room;
   const V top = hn::Set(d, method.wall_top.value_or(std::numeric_limits<double>::infinity()));
   const V rim_left = hn::Set(d, method.rim_left);
   const V rim_right = hn::Set(d, method.rim_right);
+  const V room_left = hn::Set(d, room.min.x());
+  const V room_right = hn::Set(d, room.max.x());
+  const V room_floor = hn::Set(d, room.min.y());
+  const V room_ceiling = hn::Set(d, room.max.y());
+  const V walls_reach = hn::Set(d, method.walls_reach);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = at(p.id, s) >= hn::Zero(d);
     const V vx = at(p.vx, s);
@@ -285,20 +292,20 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     const auto inside =
         hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
                 hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
-    const auto beside = hn::Or(x<rim_left, x> rim_right);
-    const auto kept = hn::AndNot(hn::And(y >= top, beside), inside);
-    outside = hn::Or(outside, hn::AndNot(kept, used));
-    // False for a NaN as well. A place that is not finite is outside.
-    const auto sound = v_sq + hn::Abs(rho) < hn::Set(d, 1e300);
-    broken = hn::Or(broken, hn::AndNot(sound, used));
+    const auto over = hn::And(y >= top, hn::Or(x<rim_left, x> rim_right));
+    const auto outside_room =
+        hn::Or(hn::Or(x<room_left, x> room_right), hn::Or(y<room_floor, y> room_ceiling));
+    const auto in_wall = hn::And(y < walls_reach, outside_room);
+    const auto kept = hn::AndNot(hn::Or(over, in_wall), inside);
+    const auto fit = hn::And(v_sq <= sound_sq, hn::Abs(rho) <= most_excess);
+    leaving = hn::Or(leaving, hn::AndNot(hn::And(kept, fit), used));
   }
   Motion seen;
   seen.speed_sq = hn::GetLane(hn::MaxOfLanes(d, speed_sq));
   seen.min_density_excess = hn::GetLane(hn::MinOfLanes(d, low));
   seen.max_density_excess = hn::GetLane(hn::MaxOfLanes(d, high));
   seen.max_x = hn::GetLane(hn::MaxOfLanes(d, front));
-  seen.outside = !hn::AllFalse(d, outside);
-  seen.finite = hn::AllFalse(d, broken);
+  seen.leaving = !hn::AllFalse(d, leaving);
   out.merge(seen);
 }
 

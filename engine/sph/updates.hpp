@@ -60,8 +60,7 @@ struct Motion {
   double max_density_excess = -1e300;
   double max_x = -1e300;  ///< m
   bool strayed = false;   ///< a particle is off its track by more than the leeway
-  bool outside = false;   ///< a particle is to be retired
-  bool finite = true;     ///< velocities and densities are; a place that is not is outside
+  bool leaving = false;   ///< a particle is to be retired
 
   void merge(const Motion& other) {
     speed_sq = std::max(speed_sq, other.speed_sq);
@@ -70,8 +69,7 @@ struct Motion {
     max_density_excess = std::max(max_density_excess, other.max_density_excess);
     max_x = std::max(max_x, other.max_x);
     strayed |= other.strayed;
-    outside |= other.outside;
-    finite &= other.finite;
+    leaving |= other.leaving;
   }
 };
 
@@ -140,7 +138,7 @@ struct Updates {
                  T* own) = nullptr;
   /// eq. 10 into both time levels, by the same increment.
   void (*reinitialise)(const ParticleSpan&, const Rates<T>&, double reference_density) = nullptr;
-  /// Speeds, densities, the front and what is outside.
+  /// Speeds, densities, the front and who is to be retired.
   void (*measure)(const ParticleSpan&, const Method&, Motion&) = nullptr;
   /// Largest acceleration of the state.
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;

@@ -73,7 +73,7 @@ Checkpoint decode_checkpoint(ByteSpan image, const Expectation& expectation) {
   const std::uint64_t version = walk_format(archive, kCheckpointFormat);
   walk_identity(archive, checkpoint);
   require_expected(checkpoint, expectation);
-  walk_physics(archive, checkpoint, sample_layout(kCheckpointFormat, version));
+  walk_physics(archive, checkpoint, CheckpointLayout::of_version(version));
   archive.require_all_met();
   require_sound(checkpoint, StorageFault::corrupt);
   return checkpoint;

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::string_view kLeapFrog = "modified_leap_frog";
 constexpr std::string_view kKickDriftKick = "kick_drift_kick";
+constexpr const char* kCauses =
+    "0 overtopped, 1 leaked; excluded: 2 not finite, 3 too fast, 4 too dense, 5 too thin";
 
 [[noreturn]] void throw_corrupt(const std::string& message) {
   throw StorageError(StorageFault::corrupt, message);
@@ -25,7 +27,7 @@ std::string to_file(Integrator integrator) {
 std::uint64_t to_file(bool flag) { return flag ? 1 : 0; }
 double to_file(double value) { return value; }
 std::uint64_t to_file(std::uint64_t value) { return value; }
-std::uint64_t to_file(RetireCause cause) { return cause == RetireCause::overtopped ? 0 : 1; }
+std::uint64_t to_file(RetireCause cause) { return static_cast<std::uint64_t>(cause); }
 
 void from_file(const std::string& text, Integrator& integrator) {
   if (text != kLeapFrog && text != kKickDriftKick) {
@@ -42,10 +44,10 @@ void from_file(std::uint64_t number, bool& flag) {
 void from_file(double number, double& value) { value = number; }
 void from_file(std::uint64_t number, std::uint64_t& value) { value = number; }
 void from_file(std::uint64_t number, RetireCause& cause) {
-  if (number > 1) {
+  if (number >= kRetireCauses) {
     throw_corrupt(fmt::format("data set /retired/cause holds {}, which is no cause", number));
   }
-  cause = number == 0 ? RetireCause::overtopped : RetireCause::leaked;
+  cause = static_cast<RetireCause>(number);
 }
 
 /// An attribute that is converted on its way.
@@ -99,15 +101,20 @@ void retired_column(Archive& archive, const std::string& name, List& list, Membe
 }
 
 template <class Archive, class Subject>
-void retired_particles(Archive& archive, Subject& list) {
+void retired_particles(Archive& archive, Subject& list, RetiredLayout layout) {
   archive.group("/retired");
   archive.count("/retired", "count", list);
   retired_column(archive, "id", list, &Retired::id, {"1", "number given at the start"});
-  retired_column(archive, "cause", list, &Retired::cause, {"1", "0 overtopped, 1 leaked"});
-  retired_column(archive, "step", list, &Retired::step, {"1", "step at which it left the domain"});
-  retired_column(archive, "time", list, &Retired::time, {"s", "time at which it left the domain"});
+  retired_column(archive, "cause", list, &Retired::cause, {"1", kCauses});
+  retired_column(archive, "step", list, &Retired::step, {"1", "step at which it left the sums"});
+  retired_column(archive, "time", list, &Retired::time, {"s", "time at which it left the sums"});
   retired_column(archive, "x", list, &Retired::x, {"m", "last position, horizontal"});
   retired_column(archive, "y", list, &Retired::y, {"m", "last position, vertical"});
+  if (layout == RetiredLayout::places) return;
+  retired_column(archive, "vx", list, &Retired::vx, {"m/s", "last velocity, horizontal"});
+  retired_column(archive, "vy", list, &Retired::vy, {"m/s", "last velocity, vertical"});
+  retired_column(archive, "density_excess", list, &Retired::density_excess,
+                 {"kg/m^3", "last density less the reference density"});
 }
 
 /// Names and units of the columns; the caller's list is as long as the file's afterwards.
@@ -215,14 +222,14 @@ void guard_baselines(Archive& archive, Subject& guards) {
 }
 
 template <class Archive, class Subject>
-void physics(Archive& archive, Subject& checkpoint, SampleLayout layout = SampleLayout::tables) {
+void physics(Archive& archive, Subject& checkpoint, const CheckpointLayout& layout = {}) {
   archive.attribute("/", "step", checkpoint.solver.step);
   archive.attribute("/", "time", checkpoint.solver.time);
   archive.attribute("/", "time_step", checkpoint.solver.time_step);
   archive.attribute("/", "next_frame", checkpoint.next_frame);
   particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
-  retired_particles(archive, checkpoint.solver.retired);
-  samples(archive, checkpoint.samples, layout);
+  retired_particles(archive, checkpoint.solver.retired, layout.retired);
+  samples(archive, checkpoint.samples, layout.samples);
   guard_baselines(archive, checkpoint.guards);
 }
 
@@ -285,7 +292,7 @@ void walk_identity(ReadArchive& archive, Checkpoint& checkpoint) { identity(arch
 void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint) {
   physics(archive, checkpoint);
 }
-void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, SampleLayout layout) {
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, const CheckpointLayout& layout) {
   physics(archive, checkpoint, layout);
 }
 void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint) {

@@ -20,14 +20,25 @@ struct Format {
   std::uint64_t version;  ///< that is written
   std::uint64_t oldest;   ///< that is still read
 };
-inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 4, 3};
+inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 5, 3};
 inline constexpr Format kSeriesFormat{"sluice-series", 2, 1};
 inline constexpr Format kFrameFormat{"sluice-frame", 1, 1};
 
 /// How a file keeps the samples: the first versions had a group for each sensor.
 enum class SampleLayout { by_sensor, tables };
-[[nodiscard]] inline SampleLayout sample_layout(const Format& format, std::uint64_t version) {
-  return version == format.version ? SampleLayout::tables : SampleLayout::by_sensor;
+/// How a checkpoint keeps what left: before version 5 without velocities and densities.
+enum class RetiredLayout { places, states };
+struct CheckpointLayout {
+  SampleLayout samples = SampleLayout::tables;
+  RetiredLayout retired = RetiredLayout::states;
+
+  [[nodiscard]] static CheckpointLayout of_version(std::uint64_t version) {
+    return {version < 4 ? SampleLayout::by_sensor : SampleLayout::tables,
+            version < 5 ? RetiredLayout::places : RetiredLayout::states};
+  }
+};
+[[nodiscard]] inline SampleLayout series_layout(std::uint64_t version) {
+  return version < 2 ? SampleLayout::by_sensor : SampleLayout::tables;
 }
 
 /// Writes the format; or returns the file's version, and throws StorageError: not_ours or
@@ -40,7 +51,7 @@ void walk_identity(ReadArchive& archive, Checkpoint& checkpoint);
 
 /// All that the digest covers.
 void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint);
-void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, SampleLayout layout);
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, const CheckpointLayout& layout);
 void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint);
 
 void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables);

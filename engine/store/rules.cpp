@@ -55,6 +55,9 @@ void require_retired(const Rules& rules, const std::vector<Retired>& list) {
     rules.require_finite(what + "time", list[i].time);
     rules.require_finite(what + "x", list[i].x);
     rules.require_finite(what + "y", list[i].y);
+    rules.require_finite(what + "vx", list[i].vx);
+    rules.require_finite(what + "vy", list[i].vy);
+    rules.require_finite(what + "density_excess", list[i].density_excess);
   }
 }
 

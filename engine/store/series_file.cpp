@@ -19,7 +19,7 @@ std::vector<SampleTable> decode(ByteSpan image) {
   ReadArchive archive(image);
   std::vector<SampleTable> tables;
   const std::uint64_t version = walk_format(archive, kSeriesFormat);
-  walk_samples(archive, tables, sample_layout(kSeriesFormat, version));
+  walk_samples(archive, tables, series_layout(version));
   archive.require_all_met();
   require_sound(tables, StorageFault::corrupt);
   return tables;

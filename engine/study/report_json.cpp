@@ -95,7 +95,8 @@ Json curves_json(const SeriesEvidence& evidence) {
 /// Fluid particles at the start, wherever they are now.
 std::optional<double> particles_of(const RunFacts& facts) {
   if (!facts.particles) return std::nullopt;
-  return *facts.particles + facts.overtopped.value_or(0.0) + facts.leaked.value_or(0.0);
+  return *facts.particles + facts.overtopped.value_or(0.0) + facts.leaked.value_or(0.0) +
+         facts.excluded.value_or(0.0);
 }
 
 Json cost_json(const RunFacts& facts) {

@@ -82,6 +82,7 @@ RunFacts run_facts(const Json& outcome) {
   facts.wall_particles = number_in(outcome, "/wall_particles");
   facts.overtopped = number_in(outcome, "/retired/overtopped");
   facts.leaked = number_in(outcome, "/retired/leaked");
+  facts.excluded = number_in(outcome, "/retired/excluded");
   facts.max_speed = number_in(outcome, "/extremes/max_speed");
   facts.min_density_ratio = number_in(outcome, "/extremes/min_density_ratio");
   facts.max_density_ratio = number_in(outcome, "/extremes/max_density_ratio");
@@ -100,7 +101,7 @@ Conservation conservation_of(const std::vector<Series>& series, const RunFacts& 
   Conservation result;
   result.energy_scale = facts.energy_scale;
   if (facts.particles && facts.overtopped && facts.leaked) {
-    const double lost = *facts.overtopped + *facts.leaked;
+    const double lost = *facts.overtopped + *facts.leaked + facts.excluded.value_or(0.0);
     const double all = *facts.particles + lost;
     if (all > 0.0) result.lost_mass = lost / all;
   }

@@ -21,7 +21,8 @@ struct RunFacts {
   std::string state;   ///< "" while the run has not ended
   std::string reason;  ///< why it is not complete
   std::string machine, simd_target, build;
-  std::optional<double> threads, step, time, particles, wall_particles, overtopped, leaked;
+  std::optional<double> threads, step, time, particles, wall_particles, overtopped, leaked,
+      excluded;
   std::optional<double> seconds;       ///< wall time of the last attempt
   std::optional<double> core_seconds;  ///< of the whole run, see core_seconds_scaled
   bool core_seconds_scaled = false;    ///< the last attempt's cost per step times all steps

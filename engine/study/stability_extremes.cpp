@@ -22,7 +22,7 @@ CaseResult end_of(StabilityBench& bench, const Json& scene) {
   const GuardBaselines& base = run.last->guards;
   const double particles = base.initial_mass / run.scene.method.particle_mass();
   result.figures.push_back(
-      {"leaked share", static_cast<double>(run.outcome.leaked) / particles, 1e-3});
+      {"leaked share", static_cast<double>(run.outcome.leaked.count) / particles, 1e-3});
   result.figures.push_back(
       {"energy growth", (base.highest_energy - base.initial_energy) / base.energy_scale, 0.01});
   return result;

@@ -29,11 +29,10 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json verdict_json(const CaseResult& r) {
   Json verdict{{"verdict", to_string(r.verdict)},
                {"reason", r.reason.empty() ? Json(nullptr) : Json(r.reason)}};
-  for (const char* key : {"step", "time", "particle", "value", "limit"}) verdict[key] = nullptr;
+  for (const char* key : {"step", "time", "value", "limit"}) verdict[key] = nullptr;
   if (r.diagnosis) {
     verdict["step"] = r.diagnosis->step;
     verdict["time"] = number(r.diagnosis->time);
-    if (r.diagnosis->particle) verdict["particle"] = number(*r.diagnosis->particle);
     verdict["value"] = number(r.diagnosis->value);
     verdict["limit"] = number(r.diagnosis->limit);
   }

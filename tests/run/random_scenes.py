@@ -111,8 +111,8 @@ def check_run(program, path, folder, scene):
     require(checkpoints, "completed without a checkpoint")
     require(outcome["state"] == "completed" and outcome["time"] >= scene["end_time"], "not at its end")
     retired = outcome["retired"]
-    require(outcome["particles"] + retired["overtopped"] + retired["leaked"] == started["particles"],
-            "alive + overtopped + leaked is not what started")
+    require(outcome["particles"] + sum(retired.values()) == started["particles"],
+            "alive + overtopped + leaked + excluded is not what started")
     check_energy(outcome)
     return "completed"
 

@@ -1,160 +1,162 @@
-"""Runs every shipped scene to its end: on each SIMD target of this machine, in both precisions, and
-dam breaks as ensembles of members perturbed by 1e-4 of the particle distance.
+"""Runs the shipped scenes on every SIMD target of this machine, in both precisions, and prints how they ended.
 
-usage: shipped_scenes.py SLUICE EXAMPLES [--folder DIR] [--members N] [--side-by-side N]
-                         [--scene NAME]... [--target NAME]... [--precision WORD]...
-                         [--end-time S] [--spacing FACTOR]
+Usage: shipped_scenes.py SLUICE SCENES [--folder DIR] [--scene NAME]... [--target T]... [--precision P]...
+                         [--members N] [--end-time S] [--spacing S] [--jobs N]
 
-Prints one row per scene, target and precision: members that failed, particles excluded, leaked and
-overtopped (median, most), and the error against the experiment where the scene has one (mean
-relative L2 of the pressures: median of the members, least to most; then the median of those members
-that excluded nobody and of those that excluded some). Exit status 1 when a member failed. With
---folder the runs are kept, and those that are complete are not run again. --spacing and --end-time
-make a quick form of the scenes.
+A dam break is run --members times (8 by default), each with its particles displaced by 1e-4 of their distance with
+another seed; any other scene once. A row says how many runs failed, how many particles were excluded, leaked and
+overtopped (median and most), and the mean relative L2 error of the pressures against the experiment where there is
+one: median and spread of all, and the medians of the members with and without excluded particles.
+
+What is complete in --folder is not run again. Without --folder all is done in a temporary one. Exit status 1 when any
+run failed.
 """
 
 import argparse
 import concurrent.futures
+import glob
+import hashlib
 import json
-import pathlib
-import re
+import os
 import statistics
 import subprocess
 import sys
 import tempfile
 
-AMPLITUDE = 1e-4  # particle distances
-DAM_BREAKS = re.compile(r"dambreak|martin-moyce|obstacle")
+TARGETS = ("SSE4", "AVX2", "AVX3")
+PRECISIONS = ("mixed", "double")
+AMPLITUDE = 1e-4
 
 
-def targets_of(program, scene):
-    """Those that run here, as the program names them when it is asked for another."""
-    refused = subprocess.run([program, "run", scene, "--simd", "none"], text=True,
-                             capture_output=True, check=False)
-    names = list(dict.fromkeys(re.findall(r"\b(?:SSE4|AVX2|AVX3\w*)\b", refused.stderr)))
-    assert names, f"no targets in: {refused.stderr}"
-    return names
-
-
-def members_of(name, count):
-    return range(1, count + 1) if DAM_BREAKS.search(name) else [None]
-
-
-def written(scene, precision, seed, options):
-    """The scene of one member."""
-    member = json.loads(json.dumps(scene))
-    member.setdefault("numerics", {})["precision"] = precision
-    member.pop("output", None)
-    if seed is not None:
-        member["jitter"] = {"amplitude": AMPLITUDE, "seed": seed}
-    if options.spacing != 1:
-        member["resolution"]["spacing"] *= options.spacing
-    if options.end_time:
-        member["end_time"] = min(member["end_time"], options.end_time)
-    return member
-
-
-def outcome_of(folder):
-    path = folder / "outcome.json"
-    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
-
-
-def run(program, folder, scene, target):
-    """The outcome and the error of one member, run unless it is there and complete."""
-    outcome = outcome_of(folder)
-    if not outcome or outcome["state"] != "completed":
-        source = folder.with_suffix(".json")
-        source.write_text(json.dumps(scene), encoding="utf-8")
-        done = subprocess.run([program, "run", source, "--folder", folder, "--simd", target,
-                               "--threads", "1"], text=True, capture_output=True, check=False)
-        outcome = outcome_of(folder)
-        if not outcome:
-            return {"state": f"exit {done.returncode}", "retired": {}, "reason": done.stderr}, None
-    report = subprocess.run([program, "report", folder, "--json"], text=True, capture_output=True,
-                            check=False)
-    evidence = json.loads(report.stdout).get("evidence") if report.returncode == 0 else None
-    return outcome, (evidence or {}).get("mean_relative_l2")
-
-
-def spread(values):
-    """"median (most)" of whole numbers."""
-    return f"{statistics.median(values):g} ({max(values):g})" if values else "-"
-
-
-def middle(values):
-    return f"{statistics.median(values):.3f} of {len(values)}" if values else "-"
-
-
-def row_of(name, target, precision, members):
-    outcomes = [outcome for outcome, _ in members]
-    failed = [outcome for outcome in outcomes if outcome["state"] != "completed"]
-
-    def gone(cause):
-        return [outcome["retired"].get(cause, 0) for outcome in outcomes]
-
-    errors = [error for _, error in members if error is not None]
-    clean = [error for outcome, error in members
-             if error is not None and not outcome["retired"].get("excluded", 0)]
-    others = [error for outcome, error in members
-              if error is not None and outcome["retired"].get("excluded", 0)]
-    error = f"{statistics.median(errors):.3f} ({min(errors):.3f} to {max(errors):.3f})" if errors else "-"
-    print(f"| {name} | {target} | {precision} | {len(members)} | {len(failed)} | {spread(gone('excluded'))} "
-          f"| {spread(gone('leaked'))} | {spread(gone('overtopped'))} | {error} | {middle(clean)} | {middle(others)} |",
-          flush=True)
-    for outcome in failed:
-        print(f"  {name}, {target}, {precision}: {outcome['state']}: {outcome.get('reason')}", file=sys.stderr)
-    return len(failed)
-
-
-def arguments():
+def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", type=lambda text: str(pathlib.Path(text).resolve()))
-    parser.add_argument("examples", type=pathlib.Path)
-    parser.add_argument("--folder", type=pathlib.Path)
+    parser.add_argument("program")
+    parser.add_argument("scenes", help="folder of scenes")
+    parser.add_argument("--folder")
+    parser.add_argument("--scene", action="append", help="name of a file without .json")
+    parser.add_argument("--target", action="append", choices=TARGETS)
+    parser.add_argument("--precision", action="append", choices=PRECISIONS)
     parser.add_argument("--members", type=int, default=8)
-    parser.add_argument("--side-by-side", type=int, default=1)
-    parser.add_argument("--scene", action="append")
-    parser.add_argument("--target", action="append")
-    parser.add_argument("--precision", action="append", choices=["mixed", "double"])
-    parser.add_argument("--end-time", type=float, default=0.0)
-    parser.add_argument("--spacing", type=float, default=1.0)
+    parser.add_argument("--end-time", type=float)
+    parser.add_argument("--spacing", type=float)
+    parser.add_argument("--jobs", type=int, default=1)
     return parser.parse_args()
 
 
-def table(options, folder):
-    files = [path for path in sorted(options.examples.glob("*.json"))
-             if not options.scene or path.stem in options.scene]
-    scenes = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in files}
-    scenes = {name: scene for name, scene in scenes.items() if "fluid" in scene}
-    assert scenes, "no such scene"
-    targets = options.target or targets_of(options.program, files[0])
-    print("| scene | SIMD target | precision | members | failed | excluded | leaked | overtopped | error "
-          "| without exclusions | with |\n|---|---|---|---|---|---|---|---|---|---|---|", flush=True)
+def runs_here(program, target):
+    environment = {**os.environ, "SLUICE_SIMD": target}
+    return subprocess.run([program, "--version"], env=environment, capture_output=True).returncode == 0
+
+
+def shipped(folder, wanted):
+    for path in sorted(glob.glob(os.path.join(folder, "*.json"))):
+        with open(path, encoding="utf-8") as stream:
+            scene = json.load(stream)
+        name = os.path.splitext(os.path.basename(path))[0]
+        if "fluid" in scene and (not wanted or name in wanted):
+            yield name, scene
+
+
+def is_dam_break(name):
+    return name.startswith(("dambreak", "martin-moyce"))
+
+
+def variant(scene, precision, seed, arguments):
+    scene = json.loads(json.dumps(scene))
+    scene.setdefault("numerics", {})["precision"] = precision
+    if seed:
+        scene["jitter"] = {"amplitude": AMPLITUDE, "seed": seed}
+    if arguments.end_time:
+        scene["end_time"] = arguments.end_time
+    if arguments.spacing:
+        scene["resolution"]["spacing"] = arguments.spacing
+    scene["output"] = {}
+    return json.dumps(scene, indent=1)
+
+
+def load(path):
+    try:
+        with open(path, encoding="utf-8") as stream:
+            return json.load(stream)
+    except (OSError, ValueError):
+        return None
+
+
+def run(program, folder, text, target):
+    """The outcome and the report of a run that is complete, or was made so."""
+    key = hashlib.sha256(text.encode()).hexdigest()[:12]
+    job = f"{folder}-{key}"
+    outcome = load(os.path.join(job, "outcome.json"))
+    if outcome is None or outcome["state"] == "stopped":
+        os.makedirs(os.path.dirname(job), exist_ok=True)
+        scene = job + ".json"
+        with open(scene, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        subprocess.run([program, "run", scene, "--folder", job, "--threads", "1", "--progress", "none"],
+                       env={**os.environ, "SLUICE_SIMD": target}, capture_output=True)
+        outcome = load(os.path.join(job, "outcome.json"))
+    return outcome, load(os.path.join(job, "report.json"))
+
+
+def error_of(report):
+    return ((report or {}).get("evidence") or {}).get("mean_relative_l2")
+
+
+def middle(values):
+    return f"{statistics.median(values):.3f}" if values else "-"
+
+
+def counts(outcomes, cause):
+    values = [one["retired"][cause] for one in outcomes if one and "retired" in one]
+    return f"{statistics.median(values):g} ({max(values)})" if values else "-"
+
+
+def row(name, target, precision, results):
+    outcomes = [outcome for outcome, _ in results]
+    failed = [one for one in outcomes if one is None or one["state"] != "completed"]
+    errors = [(error_of(report), outcome["retired"]["excluded"]) for outcome, report in results
+              if outcome and error_of(report) is not None]
+    all_errors = [error for error, _ in errors]
+    spread = f"{min(all_errors):.3f}-{max(all_errors):.3f}" if all_errors else "-"
+    print(f"{name:<24} {target:<5} {precision:<7} {len(failed):>3}/{len(results):<3}"
+          f" {counts(outcomes, 'excluded'):>10} {counts(outcomes, 'leaked'):>10} {counts(outcomes, 'overtopped'):>10}"
+          f" {middle(all_errors):>7} {spread:>12}"
+          f" {middle([e for e, n in errors if n == 0]):>8} {middle([e for e, n in errors if n > 0]):>8}", flush=True)
+    for one in failed:
+        print("    failed: " + (one["reason"] if one else "no outcome"))
+    return len(failed)
+
+
+def table(arguments, folder):
+    targets = [t for t in arguments.target or TARGETS if runs_here(arguments.program, t)]
+    print(f"{'scene':<24} {'SIMD':<5} {'sums':<7} {'failed':>7} {'excluded':>10} {'leaked':>10} {'overtopped':>10}"
+          f" {'error':>7} {'from-to':>12} {'none out':>8} {'some out':>8}")
     failed = 0
-    with concurrent.futures.ThreadPoolExecutor(options.side_by_side) as pool:
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         rows = []
-        for name, scene in scenes.items():
+        for name, scene in shipped(arguments.scenes, arguments.scene):
+            seeds = range(1, arguments.members + 1) if is_dam_break(name) else [0]
             for target in targets:
-                for precision in options.precision or ["mixed", "double"]:
-                    members = [pool.submit(run, options.program,
-                                           folder / f"{name}-{target}-{precision}-{seed or 0}",
-                                           written(scene, precision, seed, options), target)
-                               for seed in members_of(name, options.members)]
+                for precision in arguments.precision or PRECISIONS:
+                    place = os.path.join(folder, target, f"{name}-{precision}")
+                    members = [pool.submit(run, arguments.program, f"{place}-{seed}",
+                                           variant(scene, precision, seed, arguments), target) for seed in seeds]
                     rows.append((name, target, precision, members))
         for name, target, precision, members in rows:
-            failed += row_of(name, target, precision, [member.result() for member in members])
-    runs = sum(len(members) for _, _, _, members in rows)
-    print(f"{runs - failed} passed, {failed} failed")
-    return failed
+            failed += row(name, target, precision, [member.result() for member in members])
+    return failed, len(rows)
 
 
 def main():
-    options = arguments()
-    if options.folder:
-        options.folder.mkdir(parents=True, exist_ok=True)
-        return 1 if table(options, options.folder) else 0
-    with tempfile.TemporaryDirectory(prefix="sluice-scenes-") as folder:
-        return 1 if table(options, pathlib.Path(folder)) else 0
+    arguments = parse_arguments()
+    arguments.program = os.path.abspath(arguments.program)
+    if arguments.folder:
+        failed, rows = table(arguments, os.path.abspath(arguments.folder))
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            failed, rows = table(arguments, folder)
+    print(f"{failed} runs failed")
+    return 1 if failed or rows == 0 else 0
 
 
 if __name__ == "__main__":

@@ -116,8 +116,10 @@ void expect_same_bits(const SolverState& a, const SolverState& b, const std::str
   for (std::size_t k = 0; k < a.retired.size(); ++k) {
     const Retired& one = a.retired[k];
     const Retired& other = b.retired[k];
-    EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.x, one.y),
-              std::tie(other.id, other.cause, other.step, other.time, other.x, other.y))
+    EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.x, one.y, one.vx, one.vy,
+                       one.density_excess),
+              std::tie(other.id, other.cause, other.step, other.time, other.x, other.y, other.vx,
+                       other.vy, other.density_excess))
         << what << ", retired " << k;
   }
 }

@@ -330,11 +330,30 @@ Bytes as_version(ByteSpan image, std::uint64_t version) {
                          .add = [&](Hdf5Writer& w) { w.set_attribute("/", "version", version); }});
 }
 
+/// Before version 5 nothing was kept of what left but its place.
+Bytes with_places_alone(ByteSpan image) {
+  Bytes old = changed(image, {.leave_out = "/retired/vx"});
+  for (const char* path : {"/retired/vy", "/retired/density_excess"}) {
+    old = changed(old, {.leave_out = path});
+  }
+  return old;
+}
+
+TEST(CheckpointLayout, WithoutTheVelocitiesOfWhatLeftIsStillRead) {
+  Checkpoint written = make_checkpoint(5);
+  const Bytes old = as_version(with_places_alone(encode_checkpoint(written)), 4);
+  for (Retired& retired : written.solver.retired) {
+    retired.vx = retired.vy = retired.density_excess = 0.0;
+  }
+  EXPECT_TRUE(same_bits(decode_checkpoint(old), written));
+  expect_fault(StorageFault::corrupt, [&] { (void)decode_checkpoint(as_version(old, 5)); });
+}
+
 TEST(CheckpointLayout, WithAGroupForEachSensorIsStillRead) {
   const Checkpoint written = make_checkpoint(5);
   const std::vector<Series> series = split(written.samples);
   const Bytes old =
-      changed(as_version(encode_checkpoint(written), 3),
+      changed(as_version(with_places_alone(encode_checkpoint(written)), 3),
               {.leave_out = "/series", .add = [&](Hdf5Writer& w) { add_by_sensor(w, series); }});
   const Checkpoint read = decode_checkpoint(old);
   EXPECT_EQ(read.samples.size(), series.size());

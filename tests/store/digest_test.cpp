@@ -67,6 +67,9 @@ TEST(PhysicsDigest, ChangesWithEveryBitOfEveryNumber) {
     flip(retired.time);
     flip(retired.x);
     flip(retired.y);
+    flip(retired.vx);
+    flip(retired.vy);
+    flip(retired.density_excess);
   }
   for (SampleTable& table : checkpoint.samples) {
     flip(table.time);

@@ -19,7 +19,9 @@ using Limits = std::numeric_limits<double>;
 
 bool same(const Retired& a, const Retired& b) {
   return same_bits(a.id, b.id) && a.cause == b.cause && a.step == b.step &&
-         same_bits(a.time, b.time) && same_bits(a.x, b.x) && same_bits(a.y, b.y);
+         same_bits(a.time, b.time) && same_bits(a.x, b.x) && same_bits(a.y, b.y) &&
+         same_bits(a.vx, b.vx) && same_bits(a.vy, b.vy) &&
+         same_bits(a.density_excess, b.density_excess);
 }
 
 template <class List, class Same>
@@ -93,8 +95,9 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
           awkward_values(count, 100.0 * static_cast<double>(i));
     }
   }
-  checkpoint.solver.retired = {{3.0, RetireCause::overtopped, 11, 0.011, 1.5, 0.61},
-                               {5.0, RetireCause::leaked, 12, 0.012, -0.1, -0.0}};
+  checkpoint.solver.retired = {{3.0, RetireCause::overtopped, 11, 0.011, 1.5, 0.61, 0.5, -1.5, 2.5},
+                               {5.0, RetireCause::leaked, 12, 0.012, -0.1, -0.0, -0.0, 3.5, -4.5},
+                               {6.0, RetireCause::too_thin, 13, 0.013, 0.1, 0.2, 5.5, 6.5, -301.0}};
   checkpoint.samples = make_samples();
   checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0, -60.0, 70.0, 80.0, 90.0};
   checkpoint.next_frame = 4;

@@ -38,7 +38,7 @@ with h5py.File(folder / "checkpoint-000000000123.h5") as file:
     assert file["particles/x"].shape == (50,)
     assert file["particles/x"].fletcher32
     assert math.copysign(1.0, file["particles/x"][0]) == -1.0 and file["particles/x"][0] == 0.0
-    assert list(file["retired/cause"]) == [0, 1]
+    assert list(file["retired/cause"]) == [0, 1, 5]
     assert list(file["series/0000"].attrs["names"]) == ["P1", "P2"]
     assert list(file["series/0002"].attrs["names"]) == ["späte Ankunft / 1"]
     assert list(file["series/0001"].attrs["columns"]) == ["kinetic", "potential", "internal"]

@@ -32,7 +32,6 @@ CaseRun failed_run() {
   run.outcome.diagnosis = Diagnosis{.reason = "density too high",
                                     .step = 17,
                                     .time = 0.25,
-                                    .particle = 42.0,
                                     .value = 1.4,
                                     .limit = 1.3,
                                     .suggestion = "raise the sound speed"};
@@ -141,7 +140,6 @@ TEST(StabilityReport, JsonHoldsTheVerdictObjectAndNullForWhatIsNone) {
   EXPECT_EQ(verdict["reason"], "density too high");
   EXPECT_EQ(verdict["step"], 17);
   EXPECT_EQ(verdict["time"], 0.25);
-  EXPECT_EQ(verdict["particle"], 42.0);
   EXPECT_EQ(verdict["value"], 1.4);
   EXPECT_EQ(verdict["limit"], 1.3);
   EXPECT_EQ(verdict["checkpoint"], "001-case/checkpoint-000000000010.h5");
