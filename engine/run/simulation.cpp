@@ -12,6 +12,7 @@
 #include "engine/run/schedule.hpp"
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
+#include "engine/scene/walls.hpp"
 #include "engine/store/digest.hpp"
 #include "engine/store/errors.hpp"
 
@@ -24,7 +25,7 @@ Solver start_solver(const Scene& scene, const Execution& execution) {
 }
 
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
-  return Solver(scene.method, state, create_particles(scene).walls, execution);
+  return Solver(scene.method, state, scene_walls(scene), execution);
 }
 
 void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {

@@ -9,30 +9,10 @@
 #include "engine/scene/cells.hpp"
 #include "engine/scene/geometry.hpp"
 #include "engine/scene/walls.hpp"
+#include "engine/scene/water_level.hpp"
 
 namespace sluice {
 namespace {
-
-/// Density above rho_0 at a point of a region: eq. 3 with the pressure of water at rest.
-class InitialDensity {
- public:
-  InitialDensity(const FluidRegion& region, const Method& method)
-      : rest_(region.pressure == InitialPressure::zero),
-        method_(method),
-        // f . x is smallest at the region's highest point against f.
-        top_(-farthest_along(region.shape, -method.gravity)) {}
-
-  [[nodiscard]] double excess(const Vec& point) const {
-    if (rest_) return 0.0;
-    const double pressure = method_.reference_density * (method_.gravity.dot(point) - top_);
-    return pressure / (method_.sound_speed * method_.sound_speed);
-  }
-
- private:
-  bool rest_;
-  const Method& method_;
-  double top_;
-};
 
 /// Obstacles with their bounding boxes, widened by half a spacing.
 class Displacement {
@@ -101,15 +81,16 @@ void append(Particles& particles, const Vec& point, const Vec& velocity, double 
 
 void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
   std::vector<CellSet> earlier;
+  const WaterLevels levels(scene);
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
   for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
     const FluidRegion& region = scene.fluid[i];
-    const InitialDensity density(region, scene.method);
     const std::size_t before = particles.size();
     CellSet cells(region.shape, scene.method.spacing, CellFit::exact_spacing);
     cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
       if (solid.takes(point)) return;
       require_apart(earlier, point, i);
-      append(particles, point, region.velocity_at(point), density.excess(point));
+      append(particles, point, region.velocity_at(point), levels.pressure(i, point) / c2);
     });
     if (particles.size() == before) {
       throw SceneError({fmt::format("/fluid/{}", i),
@@ -124,13 +105,9 @@ void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
 
 InitialParticles create_particles(const Scene& scene) {
   InitialParticles result;
-  std::vector<Shape> solids = scene.obstacles;
-  if (scene.gate) solids.emplace_back(gate_body(*scene.gate, scene.method));
-  fill(scene, Displacement(solids, scene.method.spacing), result.state.particles);
+  fill(scene, Displacement(solid_bodies(scene), scene.method.spacing), result.state.particles);
   if (scene.jitter) displace(*scene.jitter, scene.method.spacing, result.state.particles);
-  if (scene.tank) result.walls = tank_walls(*scene.tank, scene.method);
-  const std::vector<Vec> solid = obstacle_walls(solids, scene.method);
-  result.walls.insert(result.walls.end(), solid.begin(), solid.end());
+  result.walls = scene_walls(scene);
   return result;
 }
 
