@@ -15,6 +15,7 @@
 #include "engine/scene/parse.hpp"
 #include "engine/scene/plan.hpp"
 #include "engine/scene/stability.hpp"
+#include "engine/scene/walls.hpp"
 #include "engine/store/file_system.hpp"
 
 namespace sluice {
@@ -148,9 +149,12 @@ void validate_as_json(const std::string& path) {
 void validate(const SceneArguments& arguments) {
   if (arguments.json) return validate_as_json(arguments.scene);
   const Scene scene = read_scene(arguments.scene).scene;
-  const Estimate needs = estimate(scene);
-  // Regions that overlap show only when they are filled.
-  if (needs.fluid_particles <= kTrialParticles) (void)create_particles(scene);
+  Estimate needs = estimate(scene);
+  // Regions that overlap show only when they are filled; what displaces fluid is then known too.
+  if (needs.fluid_particles <= kTrialParticles) {
+    needs.fluid_particles = start_plan(scene).fluid_particles;
+    needs.wall_particles = scene_walls(scene).size();
+  }
   fmt::print("{} is a valid scene: {} fluid and {} wall particles\n", arguments.scene,
              needs.fluid_particles, needs.wall_particles);
 }

@@ -18,7 +18,7 @@ class Reporter {
   virtual ~Reporter() = default;
   /// About once a second.
   virtual void progress(const Progress& progress) = 0;
-  /// `name`: started, resumed, checkpoint, warning, finished, stopped or failed. `fields` is an
+  /// `name`: started, packed, resumed, checkpoint, warning, finished, stopped or failed. `fields` is an
   /// object; a warning and a failure have "message".
   virtual void event(std::string_view name, const nlohmann::ordered_json& fields) = 0;
 };

@@ -10,6 +10,7 @@
 
 #include "engine/run/build_id.hpp"
 #include "engine/run/schedule.hpp"
+#include "engine/run/stopwatch.hpp"
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
 #include "engine/scene/walls.hpp"
@@ -18,11 +19,6 @@
 
 namespace sluice {
 namespace {
-
-Solver start_solver(const Scene& scene, const Execution& execution) {
-  const InitialParticles initial = create_particles(scene);
-  return Solver(scene.method, initial.state, initial.walls, execution);
-}
 
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
   return Solver(scene.method, state, scene_walls(scene), execution);
@@ -97,7 +93,7 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       scene_hash_(scene_hash(identity_text(scene_))),
       limits_(GuardLimits::for_method(scene_.method)),
       sensors_(scene_),
-      solver_(start_solver(scene_, execution)),
+      solver_(start_solver(execution)),
       samples_(sensors_.empty_tables()) {
   const Energy energy = solver_.energy();
   baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
@@ -121,6 +117,14 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();
   count_retired();
+}
+
+Solver Simulation::start_solver(const Execution& execution) {
+  const CoreStopwatch clock;
+  const InitialParticles initial = create_particles(scene_);
+  packing_ = initial.packing;
+  start_seconds_ = clock.seconds();
+  return Solver(scene_.method, initial.state, initial.walls, execution);
 }
 
 void Simulation::step() {
