@@ -9,12 +9,13 @@
 namespace sluice {
 namespace {
 
-// NeighbourLists hold pairs up to this much beyond the reach, in dx, and serve until a point moved by half.
+// NeighbourLists hold pairs up to this much beyond the reach, in dx, and serve until a point moved
+// by half.
 constexpr double kSkin = 0.4;
 constexpr double kTimeStep = 0.7;     // dx
 constexpr double kDamping = 0.25;     // share of the velocity lost in a step
 constexpr double kLongestMove = 0.1;  // dx
-constexpr double kEnough = 2e-4;      // of the residual
+constexpr double kEnough = 6e-4;      // of the residual
 
 /// Points in square cells, so that those near a place are found.
 class Bins {
@@ -97,11 +98,13 @@ class Packing {
     sum_pairs();
     sum_fixed();
     double sum = 0.0;
+    std::size_t beside = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       sum += push_[i].squaredNorm();
+      if (beside_.begin[i] < beside_.begin[i + 1]) ++beside;
       move(i);
     }
-    return std::sqrt(sum / static_cast<double>(points_.size()));
+    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(beside, 1)));
   }
 
  private:

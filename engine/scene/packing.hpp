@@ -17,7 +17,10 @@ struct FixedPoint {
 struct PackingReport {
   std::size_t particles = 0;
   int iterations = 0;
-  double residual = 0.0;  ///< root mean square of dx abs(grad C); 0 on a lattice
+  /// dx abs(grad C), squares summed over all points and divided by the number of those near a fixed
+  /// point: what is amiss is amiss there, and an inside however large does not hide it. 0 on a
+  /// lattice.
+  double residual = 0.0;
 };
 
 /// Most iterations of a packing.
