@@ -14,6 +14,7 @@
 #include "engine/scene/parse.hpp"
 #include "engine/scene/plan.hpp"
 #include "engine/scene/stability.hpp"
+#include "engine/scene/walls.hpp"
 #include "engine/store/file_system.hpp"
 
 namespace sluice {
@@ -115,7 +116,7 @@ void print_plan_json(const Plan& plan, const Estimate& estimate, const Stability
 Estimate estimate_of(const Scene& scene) {
   const Estimate rough = estimate(scene);
   const bool small = rough.fluid_particles + rough.wall_particles <= kTrialParticles;
-  return small ? estimate(scene, create_particles(scene)) : rough;
+  return small ? exact_estimate(scene) : rough;
 }
 
 void show_plan(const SceneArguments& arguments) {

@@ -29,7 +29,7 @@ void fill(Admitted& admitted) {
   Estimate& size = admitted.estimate;
   if (size.fluid_particles + size.wall_particles > kTrialParticles) return;
   try {
-    size = estimate(admitted.scene, create_particles(admitted.scene));
+    size = exact_estimate(admitted.scene);
   } catch (const SceneError& error) {
     refuse_scene({error.problem()});
   }

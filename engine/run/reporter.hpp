@@ -18,8 +18,9 @@ class Reporter {
   virtual ~Reporter() = default;
   /// About once a second.
   virtual void progress(const Progress& progress) = 0;
-  /// `name`: started, resumed, checkpoint, warning, excluded, leaked, finished, stopped or failed.
-  /// `fields` is an object; all but started, resumed and checkpoint may have "message".
+  /// `name`: started, packed, resumed, checkpoint, warning, excluded, leaked, finished, stopped or
+  /// failed. `fields` is an object; all but started, packed, resumed and checkpoint may have
+  /// "message".
   virtual void event(std::string_view name, const nlohmann::ordered_json& fields) = 0;
 };
 

@@ -177,6 +177,14 @@ Json started_fields(const Simulation& simulation, const JobFolder& folder) {
               {"bit_exact", simulation.bit_exact()}};
 }
 
+Json packed_fields(const Simulation& simulation) {
+  const PackingReport& packing = *simulation.packing();
+  return Json{{"particles", packing.particles},
+              {"iterations", packing.iterations},
+              {"residual", packing.residual},
+              {"core_seconds", simulation.start_seconds()}};
+}
+
 void report_rejected(const std::vector<std::string>& reasons, Reporter& reporter) {
   for (const std::string& reason : reasons) reporter.event("warning", {{"message", reason}});
 }
@@ -210,6 +218,7 @@ Outcome run_from_scene(JobFolder& folder, const Scene& scene, const RunOptions& 
   try {
     Simulation simulation(scene, options.execution);
     reporter.event("started", started_fields(simulation, folder));
+    if (simulation.packing()) reporter.event("packed", packed_fields(simulation));
     return RunLoop(folder, options, signals, reporter, simulation).run();
   } catch (const NumericalFailure& failure) {
     return failed_at_start(folder, scene, failure);

@@ -10,22 +10,19 @@
 
 #include "engine/run/build_id.hpp"
 #include "engine/run/schedule.hpp"
+#include "engine/run/stopwatch.hpp"
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
 #include "engine/scene/leaks.hpp"
+#include "engine/scene/walls.hpp"
 #include "engine/store/digest.hpp"
 #include "engine/store/errors.hpp"
 
 namespace sluice {
 namespace {
 
-Solver start_solver(const Scene& scene, const Execution& execution) {
-  const InitialParticles initial = create_particles(scene);
-  return Solver(method_with_solids(scene), initial.state, initial.walls, execution);
-}
-
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
-  return Solver(method_with_solids(scene), state, create_particles(scene).walls, execution);
+  return Solver(method_with_solids(scene), state, scene_walls(scene), execution);
 }
 
 void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
@@ -97,7 +94,7 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       scene_hash_(scene_hash(identity_text(scene_))),
       limits_(GuardLimits::for_method(scene_.method)),
       sensors_(scene_),
-      solver_(start_solver(scene_, execution)),
+      solver_(start_solver(execution)),
       samples_(sensors_.empty_tables()) {
   const Energy energy = solver_.energy();
   count_retired();
@@ -122,6 +119,14 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();
   count_retired();
+}
+
+Solver Simulation::start_solver(const Execution& execution) {
+  const CoreStopwatch clock;
+  const InitialParticles initial = create_particles(scene_);
+  packing_ = initial.packing;
+  start_seconds_ = clock.seconds();
+  return Solver(method_with_solids(scene_), initial.state, initial.walls, execution);
 }
 
 void Simulation::step() {

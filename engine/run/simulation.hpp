@@ -8,6 +8,7 @@
 
 #include "engine/run/guards.hpp"
 #include "engine/run/sampling.hpp"
+#include "engine/scene/packing.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/sph/retired.hpp"
 #include "engine/sph/solver.hpp"
@@ -53,6 +54,10 @@ class Simulation {
   /// The first breach of each warning guard since construction, handed out once.
   [[nodiscard]] std::vector<Diagnosis> take_warnings();
 
+  /// How the particles were packed before t = 0; absent where they were not, or not by this object.
+  [[nodiscard]] const std::optional<PackingReport>& packing() const { return packing_; }
+  /// Of one core, to make the particles of step 0.
+  [[nodiscard]] double start_seconds() const { return start_seconds_; }
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Solver& solver() const { return solver_; }
   [[nodiscard]] const std::vector<SampleTable>& samples() const { return samples_; }
@@ -76,11 +81,14 @@ class Simulation {
   void note_warnings(const StepFacts& facts);
   [[nodiscard]] StepFacts facts(std::optional<Energy> energy) const;
   [[nodiscard]] std::size_t initial_particles() const;
+  [[nodiscard]] Solver start_solver(const Execution& execution);
 
   Scene scene_;
   std::string scene_hash_;
   GuardLimits limits_;
   SensorArray sensors_;
+  std::optional<PackingReport> packing_;
+  double start_seconds_ = 0.0;
   Solver solver_;
   std::vector<SampleTable> samples_;
   GuardBaselines baselines_;

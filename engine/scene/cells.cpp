@@ -28,15 +28,25 @@ std::vector<double> crossings(const Vec& center, const Vec& semi_axes, double y)
   return {center.x() - half_width, center.x() + half_width};
 }
 
+// A shape without a line of its own here does not compile.
+struct CrossingsAt {
+  double y;
+  std::vector<double> operator()(const Rectangle& s) const {
+    const bool meets = s.corner.y() <= y && y < s.corner.y() + s.size.y();
+    if (!meets) return {};
+    return {s.corner.x(), s.corner.x() + s.size.x()};
+  }
+  std::vector<double> operator()(const Circle& s) const {
+    return crossings(s.center, Vec::Constant(s.radius), y);
+  }
+  std::vector<double> operator()(const Ellipse& s) const {
+    return crossings(s.center, s.semi_axes, y);
+  }
+  std::vector<double> operator()(const Polygon& s) const { return crossings(s, y); }
+};
+
 std::vector<double> crossings(const Shape& shape, double y) {
-  if (const auto* circle = std::get_if<Circle>(&shape)) {
-    return crossings(circle->center, Vec::Constant(circle->radius), y);
-  }
-  if (const auto* ellipse = std::get_if<Ellipse>(&shape)) {
-    return crossings(ellipse->center, ellipse->semi_axes, y);
-  }
-  if (const auto* polygon = std::get_if<Polygon>(&shape)) return crossings(*polygon, y);
-  return {};
+  return std::visit(CrossingsAt{y}, shape);
 }
 
 // Width in cells of the rim in which a point counts as on the boundary between cells.

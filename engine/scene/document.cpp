@@ -136,9 +136,9 @@ Scene resolve(const Document& document) {
   // Nothing passes over a lid: what leaves a closed tank has leaked, wherever.
   if (scene.tank && scene.tank->open_top) {
     method.wall_top = scene.tank->height;
-    // The middle of the walls, which are three particles thick.
-    method.rim_left = -1.5 * method.spacing;
-    method.rim_right = scene.tank->width + 1.5 * method.spacing;
+    const double middle = static_cast<double>(wall_layers(method)) / 2 * method.spacing;
+    method.rim_left = -middle;
+    method.rim_right = scene.tank->width + middle;
   }
   if (scene.gate && scene.tank) {
     if (scene.gate->height == 0.0) scene.gate->height = scene.tank->height;

@@ -6,6 +6,7 @@
 
 #include "engine/scene/document.hpp"
 #include "engine/scene/geometry.hpp"
+#include "engine/scene/initial.hpp"
 #include "engine/scene/walls.hpp"
 #include "engine/scene/work.hpp"
 #include "engine/sph/machine_speed.hpp"
@@ -64,8 +65,8 @@ Estimate estimate(const Scene& scene) {
   return complete(scene, whole(count_fluid_cells(scene)), whole(count_wall_cells(scene)));
 }
 
-Estimate estimate(const Scene& scene, const InitialParticles& made) {
-  return complete(scene, made.state.particles.size(), made.walls.size());
+Estimate exact_estimate(const Scene& scene) {
+  return complete(scene, start_plan(scene).fluid_particles, scene_walls(scene).size());
 }
 
 double expected_core_seconds(const Scene& scene, const Estimate& estimate, std::string_view simd) {

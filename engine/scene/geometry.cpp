@@ -47,6 +47,33 @@ bool touch(const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
   return on_segment(a, c, d) || on_segment(b, c, d) || on_segment(c, a, b) || on_segment(d, a, b);
 }
 
+std::vector<double> outline_chords(const std::vector<Vec>& points, const Vec& origin,
+                                   const Vec& direction) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec a = points[i] - origin;
+    const Vec b = points[i + 1 < points.size() ? i + 1 : 0] - origin;
+    const double a_side = cross(direction, a), b_side = cross(direction, b);
+    if ((a_side > 0) == (b_side > 0)) continue;
+    const Vec meet = a + a_side / (a_side - b_side) * (b - a);
+    result.push_back(direction.dot(meet) / direction.squaredNorm());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<double> ellipse_chords(const Vec& center, const Vec& semi_axes, const Vec& origin,
+                                   const Vec& direction) {
+  // abs(from + t way) = 1 where the ellipse is the unit circle.
+  const Vec from = (origin - center).cwiseQuotient(semi_axes);
+  const Vec way = direction.cwiseQuotient(semi_axes);
+  const double middle = -from.dot(way) / way.squaredNorm();
+  const double rest = 1.0 - (from + middle * way).squaredNorm();
+  if (rest <= 0.0) return {};
+  const double half = std::sqrt(rest / way.squaredNorm());
+  return {middle - half, middle + half};
+}
+
 template <class... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
@@ -176,6 +203,26 @@ double farthest_along(const Shape& shape, const Vec& direction) {
             }
             return most;
           },
+      },
+      shape);
+}
+
+std::vector<double> chords(const Shape& shape, const Vec& origin, const Vec& direction) {
+  return std::visit(
+      Overloaded{
+          [&](const Rectangle& s) {
+            const Vec across(s.size.x(), 0.0);
+            return outline_chords(
+                {s.corner, s.corner + across, s.corner + s.size, s.corner + s.size - across},
+                origin, direction);
+          },
+          [&](const Circle& s) {
+            return ellipse_chords(s.center, Vec::Constant(s.radius), origin, direction);
+          },
+          [&](const Ellipse& s) {
+            return ellipse_chords(s.center, s.semi_axes, origin, direction);
+          },
+          [&](const Polygon& s) { return outline_chords(s.points, origin, direction); },
       },
       shape);
 }

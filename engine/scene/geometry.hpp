@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/scene/scene.hpp"
 
 namespace sluice {
@@ -23,6 +25,11 @@ namespace sluice {
 
 /// Largest value of direction . x over a shape.
 [[nodiscard]] double farthest_along(const Shape& shape, const Vec& direction);
+
+/// Where the line origin + t direction enters and leaves a shape: values of t in pairs, increasing.
+/// Along an edge it goes as on one side of it.
+[[nodiscard]] std::vector<double> chords(const Shape& shape, const Vec& origin,
+                                         const Vec& direction);
 
 /// Whether no two edges of a polygon cross or overlap, O(n^2).
 [[nodiscard]] bool is_simple(const Polygon& polygon);

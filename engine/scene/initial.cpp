@@ -6,33 +6,15 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/scene/body_fill.hpp"
 #include "engine/scene/cells.hpp"
 #include "engine/scene/geometry.hpp"
+#include "engine/scene/lattice_fit.hpp"
 #include "engine/scene/walls.hpp"
+#include "engine/scene/water_level.hpp"
 
 namespace sluice {
 namespace {
-
-/// Density above rho_0 at a point of a region: eq. 3 with the pressure of water at rest.
-class InitialDensity {
- public:
-  InitialDensity(const FluidRegion& region, const Method& method)
-      : rest_(region.pressure == InitialPressure::zero),
-        method_(method),
-        // f . x is smallest at the region's highest point against f.
-        top_(-farthest_along(region.shape, -method.gravity)) {}
-
-  [[nodiscard]] double excess(const Vec& point) const {
-    if (rest_) return 0.0;
-    const double pressure = method_.reference_density * (method_.gravity.dot(point) - top_);
-    return pressure / (method_.sound_speed * method_.sound_speed);
-  }
-
- private:
-  bool rest_;
-  const Method& method_;
-  double top_;
-};
 
 /// Obstacles with their bounding boxes, widened by half a spacing.
 class Displacement {
@@ -90,53 +72,113 @@ void displace(const Jitter& jitter, double spacing, Particles& particles) {
   }
 }
 
-void append(Particles& particles, const Vec& point, const Vec& velocity, double excess) {
-  particles.id.push_back(static_cast<double>(particles.size()));
-  particles.x.push_back(point.x());
-  particles.y.push_back(point.y());
-  particles.vx.push_back(velocity.x());
-  particles.vy.push_back(velocity.y());
-  particles.density_excess.push_back(excess);
-}
+/// Places of the particles of each region.
+using Places = std::vector<std::vector<Vec>>;
 
-void fill(const Scene& scene, const Displacement& solid, Particles& particles) {
+Places on_lattice(const Scene& scene) {
+  const std::vector<Shape> bodies = solid_bodies(scene);
+  const Displacement solid(bodies, scene.method.spacing);
   std::vector<CellSet> earlier;
+  Places places;
   for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
-    const FluidRegion& region = scene.fluid[i];
-    const InitialDensity density(region, scene.method);
-    const std::size_t before = particles.size();
-    CellSet cells(region.shape, scene.method.spacing, CellFit::exact_spacing);
+    std::vector<Vec>& points = places.emplace_back();
+    CellSet cells(scene.fluid[i].shape, scene.method.spacing, CellFit::exact_spacing);
     cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
       if (solid.takes(point)) return;
       require_apart(earlier, point, i);
-      append(particles, point, region.velocity_at(point), density.excess(point));
+      points.push_back(point);
     });
-    if (particles.size() == before) {
+    if (points.empty()) {
       throw SceneError({fmt::format("/fluid/{}", i),
                         "no particle lies in this region: it is narrower than the lattice or "
                         "filled by obstacles; enlarge it or lower /resolution/spacing"});
     }
     earlier.push_back(std::move(cells));
   }
+  return places;
+}
+
+PackingReport pack_body(const Scene& scene, const Body& body, const std::vector<Vec>& walls,
+                        Places& places) {
+  const BodyFill fill(scene);
+  std::vector<FixedPoint> fixed = fill.outside(body);
+  for (const Vec& wall : walls) fixed.push_back({wall, 1.0});
+  std::vector<Vec> points;
+  for (const std::size_t region : body) {
+    places[region] = fill.places(region);
+    points.insert(points.end(), places[region].begin(), places[region].end());
+  }
+  const PackingReport report = pack(points, fixed, scene.method.spacing);
+  auto next = points.begin();
+  for (const std::size_t region : body) {
+    for (Vec& point : places[region]) point = *next++;
+  }
+  return report;
+}
+
+/// Packs every body that its lattice does not fit.
+std::optional<PackingReport> pack_misfits(const Scene& scene, const std::vector<Vec>& walls,
+                                          Places& places) {
+  std::optional<PackingReport> all;
+  for (const Body& body : bodies(scene)) {
+    if (!lattice_misfit(scene, body)) continue;
+    const PackingReport one = pack_body(scene, body, walls, places);
+    if (!all) all.emplace();
+    all->particles += one.particles;
+    all->iterations = std::max(all->iterations, one.iterations);
+    all->residual = std::max(all->residual, one.residual);
+  }
+  return all;
+}
+
+Particles particles_at(const Scene& scene, const Places& places) {
+  const WaterLevels levels(scene);
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
+  Particles particles;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (const Vec& point : places[i]) {
+      const Vec velocity = scene.fluid[i].velocity_at(point);
+      particles.id.push_back(static_cast<double>(particles.size()));
+      particles.x.push_back(point.x());
+      particles.y.push_back(point.y());
+      particles.vx.push_back(velocity.x());
+      particles.vy.push_back(velocity.y());
+      particles.density_excess.push_back(levels.pressure(i, point) / c2);
+    }
+  }
+  return particles;
 }
 
 }  // namespace
 
 InitialParticles create_particles(const Scene& scene) {
   InitialParticles result;
-  std::vector<Shape> solids = scene.obstacles;
-  if (scene.gate) solids.emplace_back(gate_body(*scene.gate, scene.method));
-  fill(scene, Displacement(solids, scene.method.spacing), result.state.particles);
+  result.walls = scene_walls(scene);
+  Places places = on_lattice(scene);
+  result.packing = pack_misfits(scene, result.walls, places);
+  result.state.particles = particles_at(scene, places);
   if (scene.jitter) displace(*scene.jitter, scene.method.spacing, result.state.particles);
-  if (scene.tank) result.walls = tank_walls(*scene.tank, scene.method);
-  const std::vector<Vec> solid = obstacle_walls(solids, scene.method);
-  result.walls.insert(result.walls.end(), solid.begin(), solid.end());
   return result;
+}
+
+StartPlan start_plan(const Scene& scene) {
+  const Places places = on_lattice(scene);
+  StartPlan plan;
+  for (const Body& body : bodies(scene)) {
+    const std::optional<std::string> misfit = lattice_misfit(scene, body);
+    if (misfit && !plan.packed) plan.reason = *misfit;
+    plan.packed = plan.packed || misfit.has_value();
+    const BodyFill fill(scene);
+    for (const std::size_t region : body) {
+      plan.fluid_particles += misfit ? fill.count(region) : places[region].size();
+    }
+  }
+  return plan;
 }
 
 std::optional<Problem> problem_when_filled(const Scene& scene) {
   try {
-    (void)create_particles(scene);
+    (void)on_lattice(scene);
     return std::nullopt;
   } catch (const SceneError& error) {
     return error.problem();

@@ -9,7 +9,9 @@
 
 #include "engine/scene/json_text.hpp"
 #include "engine/scene/numerics_json.hpp"
+#include "engine/scene/initial.hpp"
 #include "engine/scene/vocabulary.hpp"
+#include "engine/scene/work.hpp"
 #include "engine/sph/particles.hpp"
 
 namespace sluice {
@@ -82,8 +84,36 @@ void plan_walls(const Scene& scene, const Lists& passes) {
   passes.either(scene.gate.has_value(), "gate", kGate, "gate");
 }
 
+// Larger scenes are not filled to plan them.
+constexpr double kFilledToPlan = 5e6;
+
+/// A scene that cannot be filled has its problem told elsewhere.
+std::optional<StartPlan> start_of(const Scene& scene) {
+  if (count_fluid_cells(scene) > kFilledToPlan) return std::nullopt;
+  try {
+    return start_plan(scene);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+void plan_start(const Scene& scene, const Lists& passes) {
+  const std::string about = fmt::format(
+      "once, before t = 0: particles moved to fit their container, at most {} iterations, each "
+      "about as long as one or two steps of one core",
+      kMaxPackingIterations);
+  const std::optional<StartPlan> start = start_of(scene);
+  if (start && start->packed) {
+    passes.run("packing", about, start->reason);
+  } else {
+    passes.leave_out("packing", about,
+                     start ? "the lattice fits" : "not looked at: the run finds out");
+  }
+}
+
 void plan_passes(const Scene& scene, const Lists& passes) {
   const Method& m = scene.method;
+  plan_start(scene, passes);
   passes.always("sort", "particles into rows of cells, every so many steps or when one has left");
   passes.always("continuity", "density rate of eq. 4");
   passes.always("momentum", "pressure part of eq. 5");

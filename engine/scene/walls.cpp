@@ -51,6 +51,20 @@ Rectangle gate_body(const Gate& gate, const Method& method) {
   return {Vec(gate.x, 0.0), Vec(thickness, gate.height)};
 }
 
+std::vector<Shape> solid_bodies(const Scene& scene) {
+  std::vector<Shape> solids = scene.obstacles;
+  if (scene.gate) solids.emplace_back(gate_body(*scene.gate, scene.method));
+  return solids;
+}
+
+std::vector<Vec> scene_walls(const Scene& scene) {
+  std::vector<Vec> walls;
+  if (scene.tank) walls = tank_walls(*scene.tank, scene.method);
+  const std::vector<Vec> solid = obstacle_walls(solid_bodies(scene), scene.method);
+  walls.insert(walls.end(), solid.begin(), solid.end());
+  return walls;
+}
+
 std::vector<Vec> obstacle_walls(const std::vector<Shape>& obstacles, const Method& method) {
   const std::int64_t layers = wall_layers(method);
   std::vector<Vec> walls;

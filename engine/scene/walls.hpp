@@ -22,6 +22,12 @@ namespace sluice {
 /// What a gate fills: wall_layers() spacings to the right of its x, from the floor up.
 [[nodiscard]] Rectangle gate_body(const Gate& gate, const Method& method);
 
+/// All that stands in the tank at the start: the obstacles, then the gate.
+[[nodiscard]] std::vector<Shape> solid_bodies(const Scene& scene);
+
+/// All dummy particles of a scene, m: the tank's, then those of its solid bodies. No fluid is made.
+[[nodiscard]] std::vector<Vec> scene_walls(const Scene& scene);
+
 /// Dummy particles of obstacles, m: at the cell centres of each, from a cell size stretched to fit
 /// a rectangle and from dx otherwise, no deeper than wall_layers() cells below the surface. Where
 /// obstacles overlap, the first one's particles stand.

@@ -9,6 +9,7 @@
 #include "engine/run/simulation.hpp"
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/initial.hpp"
+#include "engine/scene/walls.hpp"
 #include "engine/store/digest.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/series_file.hpp"
@@ -41,7 +42,7 @@ Checkpoint prepared(const Scene& scene, const StabilityBench::Prepare& prepare) 
     particles.vx_half = particles.vx;
     particles.vy_half = particles.vy;
   }
-  const Solver solver(scene.method, start.solver, create_particles(scene).walls, {});
+  const Solver solver(scene.method, start.solver, scene_walls(scene), {});
   start.guards = initial_baselines(scene.method, start.solver, solver.energy());
   return start;
 }

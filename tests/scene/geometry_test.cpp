@@ -76,5 +76,24 @@ RC_GTEST_PROP(Geometry, DistanceIsNegativeExactlyInside, (int x, int y)) {
   }
 }
 
+TEST(Chords, AreWhereALineEntersAndLeaves) {
+  const Vec up(0, 1);
+  EXPECT_EQ(chords(Rectangle{Vec(1, 2), Vec(3, 4)}, Vec(2, 0), up), (std::vector<double>{2, 6}));
+  EXPECT_TRUE(chords(Rectangle{Vec(1, 2), Vec(3, 4)}, Vec(5, 0), up).empty());
+  const std::vector<double> circle = chords(Circle{Vec(1, 1), 5}, Vec(4, 0), up);
+  ASSERT_EQ(circle.size(), 2U);
+  EXPECT_DOUBLE_EQ(circle[0], -3);
+  EXPECT_DOUBLE_EQ(circle[1], 5);
+  const std::vector<double> ellipse = chords(Ellipse{Vec(0, 0), Vec(2, 1)}, Vec(-9, 0), Vec(3, 0));
+  ASSERT_EQ(ellipse.size(), 2U);
+  EXPECT_DOUBLE_EQ(ellipse[0], 7.0 / 3);
+  EXPECT_DOUBLE_EQ(ellipse[1], 11.0 / 3);
+  // A U: up the middle only its floor, along a level both arms.
+  const Polygon u{
+      {Vec(0, 0), Vec(3, 0), Vec(3, 3), Vec(2, 3), Vec(2, 1), Vec(1, 1), Vec(1, 3), Vec(0, 3)}};
+  EXPECT_EQ(chords(u, Vec(1.5, 0), up), (std::vector<double>{0, 1}));
+  EXPECT_EQ(chords(u, Vec(0, 2), Vec(1, 0)), (std::vector<double>{0, 1, 2, 3}));
+}
+
 }  // namespace
 }  // namespace sluice

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "engine/scene/walls.hpp"
 #include "tests/scene/support.hpp"
 
 namespace sluice {
@@ -198,7 +199,7 @@ TEST(InitialParticles, OfRegionsSideBySideAreNoOverlap) {
       {"shape": "rectangle", "corner": [0, 0], "size": [0.27, 0.5]},
       {"shape": "rectangle", "corner": [0.27, 0], "size": [0.5, 0.5]}])");
   const auto points = positions(create_particles(parsed(text)).state.particles);
-  EXPECT_EQ(points.size(), 5U * 10U + 10U * 10U);
+  EXPECT_EQ(points.size(), 54U + 100U) << "each region's area";
   EXPECT_GE(smallest_distance(points), 0.5 * 0.05);
 }
 
@@ -222,20 +223,13 @@ TEST(InitialParticles, OfARegionWithinAnotherAreRefused) {
   EXPECT_THROW((void)create_particles(parsed(text)), SceneError);
 }
 
-TEST(InitialParticles, GiveWayToObstaclesByHalfASpacing) {
+TEST(InitialParticles, GiveWayToRoundObstacles) {
   json text = base_scene();
   text["obstacles"] = json::parse(R"([{"shape": "circle", "center": [0.5, 0.25], "radius": 0.1}])");
   const Particles p = create_particles(parsed(text)).state.particles;
-  std::size_t expected = 0;
-  for (int i = 0; i < 20; ++i) {
-    for (int j = 0; j < 10; ++j) {
-      const Vec center(0.05 * (i + 0.5), 0.05 * (j + 0.5));
-      expected += (center - Vec(0.5, 0.25)).norm() >= 0.125 ? 1 : 0;
-    }
-  }
-  EXPECT_EQ(p.size(), expected);
+  EXPECT_EQ(p.size(), 187U) << "200 - pi 2^2 = 187.4";
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_GE((p.position(i) - Vec(0.5, 0.25)).norm(), 0.125 - 1e-9);
+    EXPECT_GT((p.position(i) - Vec(0.5, 0.25)).norm(), 0.1);
   }
 }
 
@@ -275,6 +269,127 @@ TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
   // A uniform variable: mean 0 to four standard errors, and nearly all of the range is used.
   EXPECT_LT(std::abs(mean), 4.0 * 0.1 / std::sqrt(3.0 * 2.0 * static_cast<double>(lattice.size())));
   EXPECT_GT(largest, 0.095);
+}
+
+json rectangle(double x, double y, double width, double height) {
+  return {{"shape", "rectangle"}, {"corner", {x, y}}, {"size", {width, height}}};
+}
+
+/// Largest difference between a scene's start and rho_0 g (level(x) - y), Pa.
+template <class Level>
+double off_hydrostatic(const json& text, const Level& level) {
+  const Scene scene = parsed(text);
+  const Particles p = create_particles(scene).state.particles;
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
+  double most = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double right = 9810.0 * (level(p.x[i]) - p.y[i]);
+    most = std::max(most, std::abs(c2 * p.density_excess[i] - right));
+  }
+  return most;
+}
+
+TEST(InitialPressure, OfStackedRegionsCountsFromTheUppermostLevel) {
+  json text = base_scene();
+  text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.2, 2, 0.2), rectangle(0, 0.4, 2, 0.2)};
+  EXPECT_LT(off_hydrostatic(text, [](double) { return 0.6; }), 1e-6);
+}
+
+TEST(InitialPressure, OfAColumnBesideABedIsEachsOwn) {
+  json text = base_scene();
+  text["fluid"] = {rectangle(0, 0, 1, 0.5), rectangle(1, 0, 1, 0.1)};
+  const auto level = [](double x) { return x < 1 ? 0.5 : 0.1; };
+  EXPECT_LT(off_hydrostatic(text, level), 1e-6);
+  text["fluid"] = {rectangle(0, 0, 2, 0.1), rectangle(0, 0.1, 1, 0.4)};
+  EXPECT_LT(off_hydrostatic(text, level), 1e-6) << "the bed reaches below the column";
+}
+
+TEST(InitialPressure, BelowAnObstacleIsThatOfTheArmsBesideIt) {
+  json text = base_scene();
+  text["fluid"] = {rectangle(0, 0, 0.7, 0.2), rectangle(0.7, 0, 0.6, 0.2),
+                   rectangle(1.3, 0, 0.7, 0.2), rectangle(0, 0.2, 0.5, 0.4),
+                   rectangle(1.5, 0.2, 0.5, 0.4)};
+  text["obstacles"] = {rectangle(0.5, 0.2, 1, 0.6)};
+  EXPECT_LT(off_hydrostatic(text, [](double) { return 0.6; }), 1e-6);
+}
+
+TEST(InitialPressure, IsNotPassedThroughAPlateNorToWhatFallsOntoIt) {
+  json text = base_scene();
+  text["material"]["sound_speed"] = 40;
+  text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.35, 2, 0.2)};
+  text["obstacles"] = {rectangle(0, 0.2, 2, 0.15)};
+  const Particles apart = create_particles(parsed(text)).state.particles;
+  text["fluid"] = {rectangle(0, 0, 2, 0.2)};
+  const Particles alone = create_particles(parsed(text)).state.particles;
+  text.erase("obstacles");
+  text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.2, 2, 0.2)};
+  text["fluid"][1]["velocity"] = {0, -1};
+  const Particles falling = create_particles(parsed(text)).state.particles;
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(apart.density_excess[i], alone.density_excess[i]);
+    EXPECT_EQ(falling.density_excess[i], alone.density_excess[i]);
+  }
+}
+
+TEST(StartPlan, KeepsEveryExampleOnItsLatticeAndCountsItsParticles) {
+  for (const auto& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
+    const Scene scene = parsed(json::parse(testing::read_text(path)));
+    const StartPlan plan = start_plan(scene);
+    EXPECT_FALSE(plan.packed) << path << plan.reason;
+    const InitialParticles made = create_particles(scene);
+    EXPECT_EQ(plan.fluid_particles, made.state.particles.size()) << path;
+    EXPECT_FALSE(made.packing) << path;
+    EXPECT_EQ(scene_walls(scene), made.walls) << path;
+  }
+}
+
+TEST(StartPlan, PacksWhatTheLatticeDoesNotFitToItsArea) {
+  json off_wall = base_scene();
+  off_wall["tank"]["width"] = 1.02;
+  off_wall["fluid"] = {rectangle(0, 0, 1.02, 0.5)};
+  json off_level = base_scene();
+  off_level["fluid"] = {rectangle(0, 0, 2, 0.52)};
+  json round = base_scene();
+  round["fluid"] = {rectangle(0, 0, 2, 0.5)};
+  round["obstacles"] = {{{"shape", "circle"}, {"center", {1, 0.2}}, {"radius", 0.1}}};
+  json gate = base_scene();
+  gate["gate"] = {{"x", 1.02}, {"height", 0.6}, {"speed", 3.46}};
+  gate["fluid"] = {rectangle(0, 0, 1.02, 0.5)};
+  json slope = base_scene();
+  slope["fluid"] = {rectangle(0, 0, 2, 0.5)};
+  slope["obstacles"] = {{{"shape", "polygon"}, {"points", {{1, 0}, {2, 0}, {2, 0.6}}}}};
+  const double areas[] = {0.51, 1.04, 1 - 0.01 * std::numbers::pi, 0.51, 1 - 0.175 / 0.6};
+  int i = 0;
+  for (const json& text : {off_wall, off_level, round, gate, slope}) {
+    const Scene scene = parsed(text);
+    const StartPlan plan = start_plan(scene);
+    EXPECT_TRUE(plan.packed) << i;
+    EXPECT_THAT(plan.reason, HasSubstr(i == 1 ? "% on the lattice" : "does not fit")) << i;
+    EXPECT_NEAR(static_cast<double>(plan.fluid_particles) * 0.0025, areas[i], 0.005 * areas[i])
+        << i;
+    const InitialParticles made = create_particles(scene);
+    EXPECT_EQ(plan.fluid_particles, made.state.particles.size()) << i;
+    ASSERT_TRUE(made.packing) << i;
+    EXPECT_LT(made.packing->residual, 1e-3) << i;
+    EXPECT_GT(smallest_distance(positions(made.state.particles)), 0.7 * 0.05) << i;
+    ++i;
+  }
+}
+
+TEST(PackedParticles, DoNotSagAtAFreeSide) {
+  // A column whose floor is a slope: its right face is free and must stay upright.
+  json text = base_scene();
+  text["resolution"]["spacing"] = 0.025;
+  text["fluid"] = {{{"shape", "polygon"}, {"points", {{0, 0.3}, {1, 0}, {1, 0.8}, {0, 0.8}}}}};
+  text["obstacles"] = {{{"shape", "polygon"}, {"points", {{0, 0}, {1, 0}, {0, 0.3}}}}};
+  const Particles p = create_particles(parsed(text)).state.particles;
+  double front = 0.0, top = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    front = std::max(front, p.x[i]);
+    top = std::max(top, p.y[i]);
+  }
+  EXPECT_NEAR(front, 1.0 - 0.0125, 0.2 * 0.025);
+  EXPECT_NEAR(top, 0.8 - 0.0125, 0.2 * 0.025);
 }
 
 RC_GTEST_PROP(InitialParticles, OfARectangleStayWithinHalfASpacingOfIt, ()) {

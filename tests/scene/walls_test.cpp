@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "tests/scene/support.hpp"
+
 namespace sluice {
 namespace {
 
@@ -137,6 +139,17 @@ TEST(ObstacleWalls, OfOverlappingObstaclesStandOnce) {
   const auto walls = obstacle_walls(two, method(0.05));
   EXPECT_EQ(walls.size(), 16U + 12U);
   EXPECT_GT(smallest_distance(walls), 0.049);
+}
+
+TEST(Rim, IsTheMiddleOfTheWallsHoweverThickTheyAre) {
+  nlohmann::json text = testing::base_scene();
+  EXPECT_DOUBLE_EQ(testing::parsed(text).method.rim_left, -1.5 * 0.05);
+  text["resolution"]["smoothing_ratio"] = 1.3;  // walls of four layers
+  text["numerics"]["courant"] = 0.1;
+  const Method method = testing::parsed(text).method;
+  ASSERT_EQ(wall_layers(method) % 2, 0);
+  EXPECT_DOUBLE_EQ(method.rim_left, -0.5 * 0.05 * static_cast<double>(wall_layers(method)));
+  EXPECT_DOUBLE_EQ(method.rim_right, 2.0 - method.rim_left);
 }
 
 }  // namespace

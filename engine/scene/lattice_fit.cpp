@@ -1,0 +1,192 @@
+#include "engine/scene/lattice_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/body_fill.hpp"
+#include "engine/scene/cells.hpp"
+#include "engine/scene/geometry.hpp"
+#include "engine/scene/walls.hpp"
+
+namespace sluice {
+namespace {
+
+// In dx: off half a spacing by less is a fit.
+constexpr double kOff = 0.02;
+constexpr double kAreaOff = 0.005;
+
+/// Distance of a point from a solid's face in spacings, where it faces one within a spacing.
+struct Facing {
+  double distance;
+  bool along_lattice;  ///< the face is horizontal or vertical
+};
+
+void face_outline(const std::vector<Vec>& points, const Vec& point, double dx,
+                  std::vector<Facing>& found) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec& a = points[i];
+    const Vec edge = points[i + 1 < points.size() ? i + 1 : 0] - a;
+    const double length = edge.norm();
+    const double along = (point - a).dot(edge) / length;
+    // One beside a corner faces none of its edges.
+    if (along < 0.0 || along > length) continue;
+    const Vec apart = point - a - along / length * edge;
+    const bool straight = std::abs(edge.x()) < 1e-9 * length || std::abs(edge.y()) < 1e-9 * length;
+    found.push_back({apart.norm() / dx, straight});
+  }
+}
+
+/// The faces of a solid that a point faces. A shape without a line of its own does not compile.
+struct FacesSeenFrom {
+  const Vec& point;
+  double dx;
+
+  std::vector<Facing> operator()(const Rectangle& s) const {
+    const Vec across(s.size.x(), 0.0);
+    return outline({s.corner, s.corner + across, s.corner + s.size, s.corner + s.size - across});
+  }
+  std::vector<Facing> operator()(const Polygon& s) const { return outline(s.points); }
+  std::vector<Facing> operator()(const Circle& s) const { return round(s); }
+  std::vector<Facing> operator()(const Ellipse& s) const { return round(s); }
+
+  [[nodiscard]] std::vector<Facing> outline(const std::vector<Vec>& points) const {
+    std::vector<Facing> found;
+    face_outline(points, point, dx, found);
+    return found;
+  }
+  [[nodiscard]] std::vector<Facing> round(const Shape& solid) const {
+    return {{std::abs(signed_distance(solid, point)) / dx, false}};
+  }
+};
+
+class FitCheck {
+ public:
+  FitCheck(const Scene& scene, const Body& body)
+      : scene_(scene), body_(body), dx_(scene.method.spacing), solids_(solid_bodies(scene)) {
+    for (const Shape& solid : solids_) {
+      Box box = bounds(solid);
+      box.min.array() -= dx_;
+      box.max.array() += dx_;
+      boxes_.push_back(box);
+    }
+  }
+
+  std::optional<std::string> misfit() {
+    for (const std::size_t region : body_) {
+      const CellSet cells(scene_.fluid[region].shape, dx_, CellFit::exact_spacing);
+      cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+        if (!reason_) visit(point);
+      });
+      if (reason_) return reason_;
+    }
+    if (!touches_) return std::nullopt;
+    if (auto reason = steps_apart()) return reason;
+    return wrong_area();
+  }
+
+ private:
+  void visit(const Vec& point) {
+    if (scene_.tank) visit_tank(point);
+    bool inside = false;
+    std::vector<Facing> found;
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+      if (!boxes_[i].contains(point)) continue;
+      // As an obstacle displaces fluid: what is inside is not made.
+      inside = inside || signed_distance(solids_[i], point) < 0.0;
+      for (const Facing& face : std::visit(FacesSeenFrom{point, dx_}, solids_[i])) {
+        found.push_back(face);
+      }
+    }
+    if (inside) return;
+    ++count_;
+    for (const Facing& face : found) judge(face, point, "an obstacle or the gate");
+  }
+
+  void visit_tank(const Vec& point) {
+    judge({point.x() / dx_, true}, point, "the tank's left wall");
+    judge({(scene_.tank->width - point.x()) / dx_, true}, point, "the tank's right wall");
+    judge({point.y() / dx_, true}, point, "the tank's floor");
+    if (!scene_.tank->open_top) {
+      judge({(scene_.tank->height - point.y()) / dx_, true}, point, "the tank's lid");
+    }
+  }
+
+  void judge(const Facing& face, const Vec& point, std::string_view what) {
+    if (face.distance > 1.0 + kOff) return;
+    touches_ = true;
+    if (reason_ || (face.along_lattice && std::abs(face.distance - 0.5) < kOff)) return;
+    reason_ = fmt::format("the lattice does not fit {} at ({:.6g}, {:.6g}) m", what, point.x(),
+                          point.y());
+  }
+
+  [[nodiscard]] Vec phase(std::size_t region) const {
+    const auto* rectangle = std::get_if<Rectangle>(&scene_.fluid[region].shape);
+    return rectangle != nullptr ? Vec(rectangle->corner / dx_) : Vec(Vec::Zero());
+  }
+
+  [[nodiscard]] std::optional<std::string> steps_apart() const {
+    for (const std::size_t region : body_) {
+      const Vec apart = phase(region) - phase(body_.front());
+      const Vec off = apart - apart.array().round().matrix();
+      if (off.cwiseAbs().maxCoeff() < kOff) continue;
+      return fmt::format("/fluid/{} does not meet /fluid/{} on its lattice", region, body_.front());
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<std::string> wrong_area() const {
+    const BodyFill fill(scene_);
+    std::size_t wanted = 0;
+    for (const std::size_t region : body_) wanted += fill.count(region);
+    const double share = static_cast<double>(count_) / static_cast<double>(wanted) - 1.0;
+    if (std::abs(share) <= kAreaOff) return std::nullopt;
+    return fmt::format("/fluid/{} would hold {:+.1f} % on the lattice", body_.front(), 100 * share);
+  }
+
+  const Scene& scene_;
+  const Body& body_;
+  double dx_;
+  std::vector<Shape> solids_;
+  std::vector<Box> boxes_;
+  std::size_t count_ = 0;
+  bool touches_ = false;
+  std::optional<std::string> reason_;
+};
+
+}  // namespace
+
+std::vector<Body> bodies(const Scene& scene) {
+  const std::size_t count = scene.fluid.size();
+  std::vector<std::size_t> owner(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    owner[i] = i;
+    Box box = bounds(scene.fluid[i].shape);
+    box.min.array() -= 1.001 * scene.method.spacing;
+    box.max.array() += 1.001 * scene.method.spacing;
+    for (std::size_t other = 0; other < i; ++other) {
+      const Box near = bounds(scene.fluid[other].shape);
+      const bool apart =
+          (near.min.array() > box.max.array()).any() || (near.max.array() < box.min.array()).any();
+      if (apart || owner[other] == owner[i]) continue;
+      std::replace(owner.begin(), owner.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                   std::max(owner[other], owner[i]), std::min(owner[other], owner[i]));
+    }
+  }
+  std::vector<Body> result;
+  for (std::size_t first = 0; first < count; ++first) {
+    Body body;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (owner[i] == first) body.push_back(i);
+    }
+    if (!body.empty()) result.push_back(std::move(body));
+  }
+  return result;
+}
+
+std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body) {
+  return FitCheck(scene, body).misfit();
+}
+
+}  // namespace sluice
