@@ -103,6 +103,7 @@ Outcome describe_simulation(const Simulation& simulation) {
   outcome.wall_particles = solver.wall_count();
   outcome.leaked = simulation.leaked();
   outcome.overtopped = simulation.overtopped();
+  outcome.energy = solver.energy().total();
   outcome.extremes = simulation.baselines();
   outcome.reference_density = simulation.scene().method.reference_density;
   for (const Series& series : split(simulation.samples())) {
@@ -127,6 +128,7 @@ Json to_json(const Outcome& outcome) {
               {"particles", outcome.particles},
               {"wall_particles", outcome.wall_particles}};
   object["retired"] = Json{{"overtopped", outcome.overtopped}, {"leaked", outcome.leaked}};
+  object["energy"] = outcome.energy;
   object["extremes"] = extremes_json(outcome);
   object["digests"] = digests_json(outcome);
   object["bit_exact"] = outcome.bit_exact;

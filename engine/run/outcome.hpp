@@ -46,6 +46,7 @@ struct Outcome {
   std::size_t particles = 0;
   std::size_t wall_particles = 0;
   std::size_t leaked = 0;
+  double energy = 0.0;  ///< of the fluid, J per metre of depth
   std::size_t overtopped = 0;
   GuardBaselines extremes;
   double reference_density = 0.0;  ///< kg/m^3
