@@ -141,12 +141,16 @@ std::string quantity_of(std::string kind) {
   return kind;
 }
 
+std::string heading_of(const std::string& name, const std::string& quantity) {
+  return name == quantity ? name : fmt::format("{}: {}", name, quantity);
+}
+
 Chart curve_chart(const CurveEvidence& one, const SeriesEvidence& evidence, std::size_t number) {
   const bool plain = evidence.units == ReferenceUnits::si;
   Chart chart;
   chart.id = id_of("curve", number);
   const std::string quantity = quantity_of(one.kind);
-  chart.title = fmt::format("{}: {}", one.sensor, quantity);
+  chart.title = heading_of(one.sensor, quantity);
   chart.x.label = plain ? "time t, s" : std::string(kTimeLabel);
   chart.y.label = plain ? fmt::format("{}, {}", quantity, one.unit)
                         : fmt::format("{}, dimensionless", quantity);
@@ -180,7 +184,7 @@ Chart plain_chart(const Series& series, double tau, std::size_t number) {
   constexpr std::array kInks{Ink::first, Ink::second, Ink::third, Ink::fourth};
   Chart chart;
   chart.id = id_of("sensor", number);
-  chart.title = fmt::format("{}: {}", series.name, quantity_of(series.kind));
+  chart.title = heading_of(series.name, quantity_of(series.kind));
   chart.x.label = "time t, s";
   chart.y.label = fmt::format("{}, {}", quantity_of(series.kind), series.columns[0].unit);
   const bool many = series.columns.size() > 1;

@@ -74,7 +74,7 @@ std::string pictures_html(const std::vector<std::string>& svgs) {
   std::string text =
       "<h2>Particles</h2>\n<p class=\"note\">coloured by pressure, one scale for all; what lies "
       "above its end has the last colour, what is negative the first. Solids are grey, the gate is "
-      "red. sluice report --format apng moves</p>\n<div class=\"pictures\">\n";
+      "red. sluice report --format apng makes an animation</p>\n<div class=\"pictures\">\n";
   for (const std::string& svg : svgs) text += fmt::format("<figure>\n{}</figure>\n", svg);
   return text + "</div>\n";
 }
