@@ -1,76 +1,44 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <memory>
-#include <string_view>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/checks.hpp"
 #include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
-#include "engine/ladder/markup.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/publish.hpp"
+#include "engine/store/vtk_file.hpp"
 
 namespace sluice {
 namespace {
 
 namespace fs = std::filesystem;
 
-enum class ExportFormat { xdmf, csv };
+enum class ExportFormat { vtkhdf, csv };
 
 struct ExportArguments {
   std::string folder;
   std::string output;
-  ExportFormat format = ExportFormat::xdmf;
+  ExportFormat format = ExportFormat::vtkhdf;
 };
 
-struct Item {
-  std::string_view name;
-  std::string_view type;
-};
-constexpr std::array kAttributes{Item{"vx", R"(NumberType="Float" Precision="4")"},
-                                 Item{"vy", R"(NumberType="Float" Precision="4")"},
-                                 Item{"pressure", R"(NumberType="Float" Precision="4")"},
-                                 Item{"id", R"(NumberType="UInt" Precision="8")"}};
-
-std::string data_item(std::string_view file, const Item& item, std::size_t count) {
-  return fmt::format(R"(<DataItem Format="HDF" {} Dimensions="{}">{}:/particles/{}</DataItem>)",
-                     item.type, count, file, item.name);
-}
-
-/// One moment: points with their values, read by ParaView straight from the frame's HDF5.
-std::string xdmf_grid(const std::string& file, const Frame& frame) {
-  const std::size_t count = frame.x.size();
-  constexpr std::string_view kFloat = R"(NumberType="Float" Precision="4")";
-  std::string text = fmt::format(
-      "  <Grid Name=\"step {}\">\n   <Time Value=\"{}\"/>\n"
-      "   <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>\n"
-      "   <Geometry GeometryType=\"X_Y\">\n    {}\n    {}\n   </Geometry>\n",
-      frame.step, frame.time, count, data_item(file, {"x", kFloat}, count),
-      data_item(file, {"y", kFloat}, count));
-  for (const Item& item : kAttributes) {
-    text += fmt::format("   <Attribute Name=\"{}\" Center=\"Node\">\n    {}\n   </Attribute>\n",
-                        item.name, data_item(file, item, count));
-  }
-  return text + "  </Grid>\n";
-}
-
-void export_xdmf(const std::vector<fs::path>& frames, const fs::path& output) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n <Domain>\n"
-      "  <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+/// A file for each frame, and one that gives ParaView their times. Files are named beside each
+/// other, so that no character of a folder's name matters and the folder can be moved.
+void export_vtk(const std::vector<fs::path>& frames, const fs::path& output) {
+  std::vector<std::pair<std::string, double>> files;
   for (const fs::path& path : frames) {
-    const fs::path reference = fs::absolute(path).lexically_relative(fs::absolute(output));
-    text += xdmf_grid(escaped(reference.string()), read_frame(path));
+    const Frame frame = read_frame(path);
+    files.emplace_back(vtk_name(path), frame.time);
+    write_vtk(output / files.back().first, frame);
   }
-  text += "  </Grid>\n </Domain>\n</Xdmf>\n";
-  const fs::path target = output / "frames.xdmf";
-  publish_text(target, text);
-  fmt::print("{}: {} frames; open it with ParaView's Xdmf Reader\n", target.string(),
-             frames.size());
+  const fs::path target = output / "frames.hdf.series";
+  publish_text(target, vtk_series_text(files));
+  fmt::print("{}: {} frames; open it with ParaView\n", target.string(), frames.size());
 }
 
 void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
@@ -78,7 +46,8 @@ void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
     const Frame frame = read_frame(path);
     std::string text = "time_s,id,x_m,y_m,vx_m_s,vy_m_s,pressure_Pa\n";
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
-      text += fmt::format("{},{},{},{},{},{},{}\n", frame.time, frame.id[i], frame.x[i], frame.y[i],
+      const Vec place = frame.position(i);
+      text += fmt::format("{},{},{},{},{},{},{}\n", frame.time, frame.id[i], place.x(), place.y(),
                           frame.vx[i], frame.vy[i], frame.pressure[i]);
     }
     publish_text(output / path.filename().replace_extension(".csv"), text);
@@ -103,7 +72,7 @@ void export_frames(const ExportArguments& arguments) {
     throw CommandEnd(ExitCode::storage_failure,
                      fmt::format("cannot make {}: {}", output.string(), error.message()));
   }
-  (arguments.format == ExportFormat::xdmf ? export_xdmf : export_csv)(frames, output);
+  (arguments.format == ExportFormat::vtkhdf ? export_vtk : export_csv)(frames, output);
 }
 
 }  // namespace
@@ -114,14 +83,14 @@ void add_export(CLI::App& app) {
   verb->add_option("folder", arguments->folder, "The job's folder")
       ->required()
       ->check(existing_folder());
-  const std::map<std::string, ExportFormat> formats{{"xdmf", ExportFormat::xdmf},
+  const std::map<std::string, ExportFormat> formats{{"vtkhdf", ExportFormat::vtkhdf},
                                                     {"csv", ExportFormat::csv}};
   verb->add_option("--format", arguments->format,
-                   "xdmf: one file for ParaView beside the frames; csv: a table per frame")
-      ->required()
+                   "vtkhdf (default): frames.hdf.series and a file per frame for ParaView; csv: a "
+                   "table per frame")
       ->transform(one_of(formats));
   verb->add_option("--output", arguments->output, "Where to; by default the job's frames folder");
-  verb->footer("Example: sluice export dambreak-quick --format xdmf");
+  verb->footer("Example: sluice export dambreak-quick");
   verb->callback([arguments] { export_frames(*arguments); });
 }
 

@@ -14,11 +14,12 @@
 #include "cli/service_client.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/publish.hpp"
+#include "engine/study/animation.hpp"
 
 namespace sluice {
 namespace {
 
-enum class ReportFormat { text, json, markdown, html, svg };
+enum class ReportFormat { text, json, markdown, html, svg, apng };
 
 struct ReportArguments {
   std::string target;  ///< a job's folder, or its id at a service
@@ -27,10 +28,12 @@ struct ReportArguments {
   std::filesystem::path output;
   double tau = kComparisonTau;
   ReportFormat format = ReportFormat::text;
+  Quantity colour = Quantity::pressure;
   bool json = false;
 };
 
-std::string formatted(const std::filesystem::path& folder, double tau, ReportFormat format) {
+std::string formatted(const std::filesystem::path& folder, double tau, ReportFormat format,
+                      Quantity colour) {
   const JobRecord job = read_job(folder);
   const Report report = make_report(job.scene, job.series, job.outcome, tau);
   switch (format) {
@@ -39,7 +42,15 @@ std::string formatted(const std::filesystem::path& folder, double tau, ReportFor
     case ReportFormat::markdown:
       return report_markdown(report);
     case ReportFormat::html:
-      return report_html(report, job.series, picture_frames(folder, job.scene));
+      return report_html(report, job.series, picture_frames(folder, report));
+    case ReportFormat::apng:
+      if (std::string moving = animation_png(folder, report, colour); !moving.empty()) {
+        return moving;
+      }
+      throw CommandEnd(ExitCode::usage,
+                       fmt::format("{} has no snapshots to show: its scene has no key "
+                                   "output.frames, or it did not run yet",
+                                   folder.string()));
     case ReportFormat::svg:
       if (std::string sheet = report_svg(report); !sheet.empty()) return sheet;
       throw CommandEnd(ExitCode::usage,
@@ -61,12 +72,12 @@ void write_files(const ReportArguments& arguments, const std::filesystem::path& 
   }
   publish_report(folder, arguments.output, arguments.tau);
   publish_text(arguments.output / "report.txt",
-               formatted(folder, arguments.tau, ReportFormat::text));
+               formatted(folder, arguments.tau, ReportFormat::text, arguments.colour));
 }
 
 void report_folder(const ReportArguments& arguments, const std::filesystem::path& folder) {
   const ReportFormat format = arguments.json ? ReportFormat::json : arguments.format;
-  const std::string shown = formatted(folder, arguments.tau, format);
+  const std::string shown = formatted(folder, arguments.tau, format, arguments.colour);
   if (!arguments.output.empty()) write_files(arguments, folder);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
@@ -95,16 +106,20 @@ void add_report(CLI::App& app) {
   verb->add_option("target", arguments->target,
                    "Job folder, of a run that goes on or has ended, or the job's id at a service")
       ->required();
-  const std::map<std::string, ReportFormat> formats{{"text", ReportFormat::text},
-                                                    {"json", ReportFormat::json},
-                                                    {"markdown", ReportFormat::markdown},
-                                                    {"html", ReportFormat::html},
-                                                    {"svg", ReportFormat::svg}};
+  const std::map<std::string, ReportFormat> formats{
+      {"text", ReportFormat::text},         {"json", ReportFormat::json},
+      {"markdown", ReportFormat::markdown}, {"html", ReportFormat::html},
+      {"svg", ReportFormat::svg},           {"apng", ReportFormat::apng}};
+  const std::map<std::string, Quantity> quantities{{"pressure", Quantity::pressure},
+                                                   {"speed", Quantity::speed}};
   CLI::Option* format =
-      verb->add_option("--format", arguments->format,
-                       "text, json, markdown, html: one page with plots and pictures, or svg: the "
-                       "plots over the reference")
+      verb->add_option(
+              "--format", arguments->format,
+              "text, json, markdown, html: one page with plots and pictures, svg: the plots "
+              "over the reference, or apng: an animation of all snapshots")
           ->transform(one_of(formats));
+  verb->add_option("--colour", arguments->colour, "What colours an animation's particles")
+      ->transform(one_of(quantities));
   verb->add_flag("--json", arguments->json, "The same as --format json")->excludes(format);
   verb->add_option("--tau", arguments->tau, "Time filter of pressures, s")
       ->check(number_above_zero())
@@ -115,6 +130,7 @@ void add_report(CLI::App& app) {
   add_service_switch(*verb, arguments->service, arguments->of_service);
   verb->footer(
       "Example: sluice report dambreak-paper --format html > dambreak-paper.html\n"
+      "         sluice report dambreak-paper --format apng > dambreak-paper.png\n"
       "         sluice report j0r2mt1q8kq0f7a3c1d2e --server http://127.0.0.1:8080");
   verb->callback([arguments] { report(*arguments); });
 }

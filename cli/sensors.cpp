@@ -36,7 +36,6 @@ Series filtered(const Series& series, double tau) {
     for (std::size_t n = 0; n < series.size(); ++n) {
       result.values[n * width + column] = values.value[n];
     }
-    result.weight = values.weight;
   }
   return result;
 }

@@ -71,7 +71,6 @@ Series filtered(Series series, double tau) {
     for (std::size_t n = 0; n < raw.size(); ++n) {
       series.values[n * width + column] = result.value[n];
     }
-    series.weight = result.weight;
   }
   return series;
 }

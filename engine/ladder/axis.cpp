@@ -46,6 +46,9 @@ void fit_logarithmic(Axis& axis, double low, double high) {
   axis.high = middle * 2.0;
 }
 
+/// An axis spans at least this share of the values on it.
+constexpr double kLeastSpan = 0.1;
+
 }  // namespace
 
 std::vector<double> ticks(const Axis& axis, int wanted) {
@@ -73,6 +76,19 @@ std::string tick_text(double value) {
   return fmt::format("{:.6g}", value);
 }
 
+void hold_axis(Axis& axis, const std::vector<double>& values) {
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(low < high)) return fit_axis(axis, values);
+  axis.low = low;
+  axis.high = high;
+}
+
 void fit_axis(Axis& axis, const std::vector<double>& values) {
   const bool logarithmic = axis.scale == AxisScale::logarithmic;
   double low = INFINITY;
@@ -88,6 +104,13 @@ void fit_axis(Axis& axis, const std::vector<double>& values) {
   }
   if (logarithmic) return fit_logarithmic(axis, low, high);
   if (low > 0.0 && low < 0.5 * high) low = 0.0;
+  // What hardly changes is drawn so: a twentieth of the value fills half of the height.
+  const double least = kLeastSpan * std::max(std::abs(low), std::abs(high));
+  if (high - low < least) {
+    const double middle = 0.5 * (low + high);
+    low = middle - 0.5 * least;
+    high = middle + 0.5 * least;
+  }
   const double room = high > low ? 0.02 * (high - low) : 0.5 * std::max(std::abs(high), 1e-9);
   const double step = nice_step(high - low + 2.0 * room, 6);
   axis.low = low == 0.0 ? 0.0 : std::floor((low - room) / step) * step;

@@ -17,37 +17,15 @@ namespace {
 // Lengths in units of the view box, which are pixels at the size charts are made for.
 constexpr double kWidth = 560.0;
 constexpr double kPlotHeight = 270.0;
-constexpr double kLeft = 64.0;
+constexpr double kLeft = 64.0;    ///< more where the numbers of the y axis are long
+constexpr double kYLabel = 34.0;  ///< room of the y axis's label and gaps
+constexpr double kDigit = 8.2;    ///< width of a digit at 13 units
 constexpr double kRight = 18.0;
 constexpr double kTitleHeight = 26.0;
 constexpr double kLegendRow = 20.0;
 constexpr double kLegendKey = 34.0;
 constexpr double kBottom = 50.0;
 constexpr double kLetter = 6.9;  ///< mean width of a letter at 13 units: for the legend's rows only
-
-constexpr std::string_view kStyle = R"(
-.chart { --ink: #1b1f24; --faint: #d0d7de; --frame: #57606a; --sim: #0059b3; --exp: #1b1f24;
-  --one: #0059b3; --two: #b35900; --three: #1a7f37; --four: #8250df; --band: #1b1f24; --halo: #ffffff; }
-@media (prefers-color-scheme: dark) {
-.chart { --ink: #e6edf3; --faint: #30363d; --frame: #8b949e; --sim: #58a6ff; --exp: #e6edf3;
-  --one: #58a6ff; --two: #f0883e; --three: #56d364; --four: #d2a8ff; --band: #e6edf3; --halo: #0d1117; } }
-.chart text { font: 13px system-ui, "DejaVu Sans", sans-serif; fill: var(--ink); }
-.chart .title { font-weight: 600; }
-.chart .grid { stroke: var(--faint); stroke-width: 1; }
-.chart .frame { stroke: var(--frame); stroke-width: 1; fill: none; }
-.chart .canvas { fill: #f6f8fa; }
-.chart .band { fill: var(--band); fill-opacity: 0.16; }
-.chart .line { fill: none; stroke-width: 1.4; stroke-linejoin: round; }
-.chart .mark { stroke-width: 1.3; fill: none; }
-.chart .word { font-size: 11px; paint-order: stroke; stroke: var(--halo); stroke-width: 3px; }
-.chart .simulation { stroke: var(--sim); }
-.chart .experiment { stroke: var(--exp); }
-.chart .experiment.line { stroke-dasharray: 6 3; stroke-width: 1.6; }
-.chart .first { stroke: var(--one); }
-.chart .second { stroke: var(--two); }
-.chart .third { stroke: var(--three); }
-.chart .fourth { stroke: var(--four); }
-)";
 
 constexpr std::array<std::string_view, 6> kInkNames{"simulation", "experiment", "first",
                                                     "second",     "third",      "fourth"};
@@ -57,13 +35,14 @@ std::string_view class_of(Ink ink) { return kInkNames[static_cast<std::size_t>(i
 struct Frame2d {
   const Chart& chart;
   double top;
+  double left = kLeft;
 
   static double share(const Axis& axis, double value) {
     if (axis.scale == AxisScale::linear) return (value - axis.low) / (axis.high - axis.low);
     return std::log(value / axis.low) / std::log(axis.high / axis.low);
   }
   [[nodiscard]] double x(double value) const {
-    return kLeft + share(chart.x, value) * (kWidth - kLeft - kRight);
+    return left + share(chart.x, value) * (kWidth - left - kRight);
   }
   [[nodiscard]] double y(double value) const {
     return top + (1.0 - share(chart.y, value)) * kPlotHeight;
@@ -240,6 +219,15 @@ Legend lay_out(const std::vector<LegendEntry>& entries) {
   return legend;
 }
 
+/// Where the plot begins, so that its label stands clear of its numbers.
+double left_of(const Chart& chart) {
+  std::size_t longest = 0;
+  for (const double place : ticks(chart.y, 6)) {
+    longest = std::max(longest, tick_text(place).size());
+  }
+  return std::max(kLeft, kYLabel + kDigit * static_cast<double>(longest));
+}
+
 std::string axes_svg(const Frame2d& frame) {
   std::string text;
   for (const double place : ticks(frame.chart.x, 8)) {
@@ -254,12 +242,12 @@ std::string axes_svg(const Frame2d& frame) {
     text += fmt::format(
         "<path class=\"grid\" d=\"M{} {:.1f}H{:.1f}\"/><text x=\"{}\" y=\"{:.1f}\" "
         "text-anchor=\"end\">{}</text>\n",
-        kLeft, y, kWidth - kRight, kLeft - 7.0, y + 4.5, tick_text(place));
+        frame.left, y, kWidth - kRight, frame.left - 7.0, y + 4.5, tick_text(place));
   }
   text += fmt::format(
       "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
       "<text transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-      0.5 * (kLeft + kWidth - kRight), frame.bottom() + 40.0, escaped(frame.chart.x.label),
+      0.5 * (frame.left + kWidth - kRight), frame.bottom() + 40.0, escaped(frame.chart.x.label),
       frame.top + 0.5 * kPlotHeight, escaped(frame.chart.y.label));
   return text;
 }
@@ -268,15 +256,15 @@ std::string notes_svg(const Frame2d& frame) {
   std::string text;
   double y = frame.bottom() + kBottom + 10.0;
   for (const std::string& note : frame.chart.notes) {
-    text += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft, y, escaped(note));
+    text += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", frame.left, y, escaped(note));
     y += kLegendRow;
   }
   return text;
 }
 
 std::string frame_rectangle(const Frame2d& frame) {
-  return fmt::format("x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", kLeft, frame.top,
-                     kWidth - kLeft - kRight, kPlotHeight);
+  return fmt::format("x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", frame.left,
+                     frame.top, kWidth - frame.left - kRight, kPlotHeight);
 }
 
 std::string content_svg(const Frame2d& frame) {
@@ -298,7 +286,7 @@ struct ChartBody {
 
 ChartBody body_of(const Chart& chart) {
   const Legend legend = lay_out(legend_of(chart));
-  const Frame2d frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0};
+  const Frame2d frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0, left_of(chart)};
   std::string text = fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
                                  escaped(chart.title));
   text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);
@@ -322,14 +310,12 @@ std::string opening(double width, double height, SvgPlace place, std::string_vie
     text += fmt::format(
         "<style>{}</style>\n<rect width=\"100%\" height=\"100%\" "
         "style=\"fill: var(--halo)\"/>\n",
-        kStyle);
+        chart_style());
   }
   return text;
 }
 
 }  // namespace
-
-std::string_view chart_style() { return kStyle; }
 
 std::string chart_svg(const Chart& chart, SvgPlace place) {
   const ChartBody body = body_of(chart);

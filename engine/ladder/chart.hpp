@@ -53,8 +53,12 @@ struct Chart {
 };
 
 /// Limits that hold all finite values with some room, on ticks; zero is a limit where it is near.
-/// A logarithmic axis takes positive values only.
+/// A logarithmic axis takes positive values only; a linear one spans at least a tenth of the
+/// values, so that noise on a constant is not drawn as tall as the plot.
 void fit_axis(Axis& axis, const std::vector<double>& values);
+
+/// Limits that end where the finite values do, for times; fit_axis() where there are not two.
+void hold_axis(Axis& axis, const std::vector<double>& values);
 
 /// Whether the SVG stands in a page with chart_style() or is a file of its own.
 enum class SvgPlace { page, file };

@@ -54,6 +54,15 @@ void take_curves(StudyRow& row, const Json& report) {
   }
 }
 
+/// Without a reference runs can still be compared with each other.
+void take_sensors(StudyRow& row, const Json& report) {
+  for (const Json& one : find(report, "/sensors")) {
+    const std::string column = text_at(one, "/column");
+    add_quantity(row, text_at(one, "/name") + (column == "value" ? "" : " " + column) + " mean",
+                 number_at(one, "/mean"));
+  }
+}
+
 }  // namespace
 
 StudyRow row_of_report(const Json& report) {
@@ -68,7 +77,9 @@ StudyRow row_of_report(const Json& report) {
   row.simd_target = text_at(report, "/cost/simd_target");
   take_experiment(row, report);
   take_curves(row, report);
-  if (!row.error) row.reason = "no error: its scene has no reference, or its sensors are not there";
+  if (row.error) return row;
+  if (row.quantities.empty()) take_sensors(row, report);
+  row.reason = "no error: its scene has no reference, or its sensors are not there";
   return row;
 }
 

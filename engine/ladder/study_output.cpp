@@ -31,14 +31,29 @@ std::string spread_of(const SetupResult& setup) {
   return fmt::format("{:.3f}-{:.3f}", *setup.lowest_error, *setup.highest_error);
 }
 
+/// Whether the study compares with anything.
+bool has_errors(const StudyResult& result) {
+  return std::any_of(result.rows.begin(), result.rows.end(),
+                     [](const StudyRow& row) { return row.error.has_value(); });
+}
+
 Table setup_table(const StudyResult& result) {
   Table table;
   table.title = "Error against cost";
   table.note =
       "error: mean relative L2 of the reference's sensors; front: no other set-up has less "
       "error for the same or less cost";
+  const bool refined = std::any_of(result.setups.begin(), result.setups.end(),
+                                   [](const SetupResult& setup) { return setup.difference.has_value(); });
+  if (refined) {
+    table.note +=
+        "; from the finest: mean relative difference of plateaus, means and the like from those "
+        "at the finest spacing";
+  }
+  if (!has_errors(result)) table.note += "; no error: the scenes have no reference";
   table.head = {"set-up",       "state",           "error",     "spread",
                 "core-seconds", "million steps/s", "particles", "front"};
+  if (refined) table.head.insert(table.head.begin() + 4, "from the finest");
   for (const SetupResult& setup : result.setups) {
     const StudyRow& first = result.rows[setup.runs.front()];
     const auto rate = first.particle_steps_per_second;
@@ -46,6 +61,8 @@ Table setup_table(const StudyResult& result) {
                           spread_of(setup), brief(setup.core_seconds, 4),
                           cell(rate ? std::optional(*rate * 1e-6) : std::nullopt, 2),
                           brief(first.particles, 12), setup.on_front ? "*" : ""});
+    auto& row = table.rows.back();
+    if (refined) row.insert(row.begin() + 4, cell(setup.difference, 4));
   }
   return table;
 }
@@ -95,7 +112,7 @@ Table failure_table(const StudyResult& result) {
   table.head = {"run", "state", "reason"};
   for (std::size_t k = 0; k < result.runs.size(); ++k) {
     const StudyRow& row = result.rows[k];
-    if (row.state == RunState::completed && row.error) continue;
+    if (row.state == RunState::completed && (row.error || !has_errors(result))) continue;
     table.rows.push_back({result.runs[k].name, std::string(to_string(row.state)),
                           row.reason.empty() ? "-" : row.reason});
   }
@@ -233,6 +250,7 @@ nlohmann::ordered_json study_json(const StudyResult& result) {
                       {"error", value_of(setup.error)},
                       {"lowest_error", value_of(setup.lowest_error)},
                       {"highest_error", value_of(setup.highest_error)},
+                      {"difference_from_finest", value_of(setup.difference)},
                       {"core_seconds", value_of(setup.core_seconds)},
                       {"on_pareto_front", setup.on_front}});
   }

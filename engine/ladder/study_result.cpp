@@ -1,6 +1,7 @@
 #include "engine/ladder/study_result.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace sluice {
@@ -37,16 +38,16 @@ void average(SetupResult& setup, const std::vector<StudyRow>& rows) {
     const StudyRow& row = rows[k];
     if (row.state == RunState::completed) ++setup.completed;
     complete = complete && row.state == RunState::completed && row.error;
-    priced = priced && row.core_seconds;
+    priced = priced && row.state == RunState::completed && row.core_seconds;
+    cost += row.core_seconds.value_or(0.0);
     if (!row.error) continue;
     error += *row.error;
-    cost += row.core_seconds.value_or(0.0);
     setup.lowest_error = std::min(setup.lowest_error.value_or(*row.error), *row.error);
     setup.highest_error = std::max(setup.highest_error.value_or(*row.error), *row.error);
   }
   const auto count = static_cast<double>(setup.runs.size());
   if (complete) setup.error = error / count;
-  if (complete && priced) setup.core_seconds = cost / count;
+  if (priced) setup.core_seconds = cost / count;
 }
 
 bool dominates(const SetupResult& a, const SetupResult& b) {
@@ -90,10 +91,11 @@ std::string family_of(const SetupResult& setup) {
   return varied ? name : std::string{};
 }
 
-/// Mean of each quantity over the repeats of a set-up, the error first.
+/// Mean of each quantity over the repeats of a set-up, the error first if there is one.
 std::vector<std::pair<std::string, double>> quantities_of(const SetupResult& setup,
                                                           const std::vector<StudyRow>& rows) {
-  std::vector<std::pair<std::string, double>> all{{"error", *setup.error}};
+  std::vector<std::pair<std::string, double>> all;
+  if (setup.error) all.emplace_back("error", *setup.error);
   for (const auto& [name, ignored] : rows[setup.runs.front()].quantities) {
     double sum = 0.0;
     std::size_t count = 0;
@@ -129,7 +131,7 @@ std::vector<Convergence> find_convergence(const std::vector<SetupResult>& setups
   std::map<std::pair<std::string, std::string>, std::vector<Refined>> points;
   for (const SetupResult& setup : setups) {
     const std::string family = family_of(setup);
-    if (family.empty() || !setup.error) continue;
+    if (family.empty() || setup.completed < setup.runs.size()) continue;
     for (const auto& [quantity, value] : quantities_of(setup, rows)) {
       const std::pair key{family, quantity};
       if (!points.contains(key)) order.push_back(key);
@@ -141,6 +143,40 @@ std::vector<Convergence> find_convergence(const std::vector<SetupResult>& setups
     if (points[key].size() >= 3) all.push_back(converge(key.first, key.second, points[key]));
   }
   return all;
+}
+
+/// How far apart the quantities are that both have, the error left out.
+std::optional<double> difference_of(const std::vector<std::pair<std::string, double>>& ours,
+                                    const std::vector<std::pair<std::string, double>>& finest) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const auto& [name, value] : ours) {
+    for (const auto& [other, best] : finest) {
+      if (other != name || name == "error") continue;
+      const double scale = std::max(std::abs(value), std::abs(best));
+      sum += scale > 0.0 ? std::abs(value - best) / scale : 0.0;
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
+void compare_with_finest(std::vector<SetupResult>& setups, const std::vector<StudyRow>& rows) {
+  std::map<std::string, const SetupResult*> finest;
+  const auto counts = [](const SetupResult& setup) {
+    return setup.completed == setup.runs.size() && !family_of(setup).empty();
+  };
+  for (const SetupResult& setup : setups) {
+    if (!counts(setup)) continue;
+    const SetupResult*& best = finest[family_of(setup)];
+    if (best == nullptr || setup.spacing < best->spacing) best = &setup;
+  }
+  for (SetupResult& setup : setups) {
+    if (!counts(setup)) continue;
+    setup.difference = difference_of(quantities_of(setup, rows),
+                                     quantities_of(*finest.at(family_of(setup)), rows));
+  }
 }
 
 }  // namespace
@@ -166,6 +202,7 @@ StudyResult evaluate(const Study& study, std::vector<StudyRun> runs, std::vector
   result.setups = group(result.runs);
   for (SetupResult& setup : result.setups) average(setup, result.rows);
   mark_front(result.setups);
+  compare_with_finest(result.setups, result.rows);
   for (const double target : study.targets) {
     result.cheapest.push_back(cheapest_below(target, result.setups));
   }

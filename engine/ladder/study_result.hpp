@@ -36,8 +36,11 @@ struct SetupResult {
   std::size_t completed = 0;
   std::optional<double> error;  ///< mean over the repeats; only when all of them are completed
   std::optional<double> lowest_error, highest_error;
-  std::optional<double> core_seconds;  ///< mean over the repeats
-  bool on_front = false;               ///< no other set-up has less error for at most the same cost
+  std::optional<double> core_seconds;  ///< mean over the repeats; only when all are completed
+  /// From the finest spacing of set-ups that differ in nothing else: mean over their quantities of
+  /// |q - q_finest| / max(|q|, |q_finest|). Absent where no spacing is varied.
+  std::optional<double> difference;
+  bool on_front = false;  ///< no other set-up has less error for at most the same cost
 };
 
 /// The cheapest set-up with an error below a target; `setup` is absent when there is none.

@@ -116,6 +116,7 @@ Outcome describe_simulation(const Simulation& simulation) {
                                                         : outcome.leaked;
     kind.merge(simulation.departed(cause));
   }
+  outcome.energy = solver.energy().total();
   outcome.extremes = simulation.baselines();
   outcome.reference_density = simulation.scene().method.reference_density;
   for (const Series& series : split(simulation.samples())) {
@@ -145,6 +146,7 @@ Json to_json(const Outcome& outcome) {
   object["taken_along"] = Json{{"overtopped", departed_json(outcome.overtopped)},
                                {"leaked", departed_json(outcome.leaked)},
                                {"excluded", departed_json(outcome.excluded)}};
+  object["energy"] = outcome.energy;
   object["extremes"] = extremes_json(outcome);
   object["digests"] = digests_json(outcome);
   object["bit_exact"] = outcome.bit_exact;

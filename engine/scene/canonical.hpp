@@ -11,8 +11,8 @@ namespace sluice {
 /// scenes give equal text. Needs a scene that parse_scene() could have made.
 [[nodiscard]] std::string canonical_text(const Scene& scene);
 
-/// The same without name, description, end time and reference: what a checkpoint is bound to. A run
-/// may be renamed, extended and compared with something else, nothing more.
+/// The same without name, description, end time, reference and times of pictures: what a checkpoint
+/// is bound to. A run may be renamed, extended and looked at in another way, nothing more.
 [[nodiscard]] std::string identity_text(const Scene& scene);
 
 }  // namespace sluice

@@ -22,6 +22,7 @@ inline constexpr std::size_t kMaxShapes = 64;
 inline constexpr std::size_t kMaxPolygonPoints = 256;
 inline constexpr std::size_t kMaxSensors = 1024;
 inline constexpr std::size_t kMaxReferenceCurves = 32;
+inline constexpr std::size_t kMaxPictures = 24;
 inline constexpr std::size_t kMaxReferencePoints = 2000;
 
 template <class Archive>
@@ -462,6 +463,11 @@ void describe(Archive& a, Document& document) {
   a.section("output", {.about = "what is written beside checkpoints and series"}, [&](auto& child) {
     child.section("frames", scene.frames,
                   {.about = "snapshots of all particles", .otherwise = "no snapshots"});
+    child.numbers("pictures", scene.pictures,
+                  {.about = "times that a report's pictures show, each by the nearest snapshot; "
+                            "they change nothing in the run. Without them the report chooses",
+                   .max = kMaxPictures},
+                  {.about = "time", .unit = "s", .range = from(0, 1e6)});
   });
   a.section("scales", scene.scales,
             {.about = "lengths that make results dimensionless",

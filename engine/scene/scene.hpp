@@ -146,6 +146,7 @@ struct Scene {
   std::vector<Sensor> sensors;
   std::optional<Jitter> jitter;
   std::optional<Frames> frames;
+  std::vector<double> pictures;  ///< s; times of a report's pictures; empty: it chooses
   std::optional<Scales> scales;
   std::optional<SceneReference> reference;
   double end_time = 0.0;  ///< s; the run ends at the first step at or after it

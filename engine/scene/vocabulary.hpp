@@ -67,12 +67,26 @@ inline constexpr Words<WallPressure, 2> kWallPressureWords{{
     {"clamped", WallPressure::clamped, "not below zero: keeps particles from the wall's far side"},
 }};
 inline constexpr Words<SensorKind, 6> kSensorWords{{
-    {"pressure", SensorKind::pressure, "pressure at a point"},
-    {"surface_height", SensorKind::surface_height, "height of the free surface at x"},
-    {"surge_front", SensorKind::surge_front, "largest x that the fluid has reached"},
-    {"column_height", SensorKind::column_height, "height of the fluid at the left wall"},
-    {"energy", SensorKind::energy, "kinetic, potential and internal"},
-    {"arrival", SensorKind::arrival, "distance of the nearest fluid to a point"},
+    {"pressure", SensorKind::pressure,
+     "pressure at a point: the kernel's mean over the fluid around it, eq. 11, or with "
+     "air_pressure "
+     "that over fluid and air; dry, without a value, where no fluid is within the kernel"},
+    {"surface_height", SensorKind::surface_height,
+     "greatest height at x where fluid fills half of the kernel, so of splashes and of the upper "
+     "one of two surfaces too; nearer to a tank wall than half of the kernel's support, taken "
+     "there"},
+    {"surge_front", SensorKind::surge_front,
+     "largest x of any fluid particle, at most the tank's right wall: a front only where a column "
+     "on "
+     "the left runs to the right over a dry bed; spray counts"},
+    {"column_height", SensorKind::column_height,
+     "surface_height at x, by default beside the left wall"},
+    {"energy", SensorKind::energy,
+     "kinetic, potential (against gravity, zero at the origin) and internal energy of the fluid "
+     "per "
+     "metre of depth"},
+    {"arrival", SensorKind::arrival,
+     "the time at which a fluid particle first comes within 1.5 particle distances of a point"},
 }};
 
 inline constexpr Words<Experiment, 1> kExperimentWords{{

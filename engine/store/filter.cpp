@@ -50,7 +50,8 @@ class Block {
     for (std::size_t s = 0; s < width_; ++s) {
       const std::size_t columns = series[s]->columns.size();
       for (std::size_t n = 0; n < samples; ++n) {
-        raw_[n * width_ + s] = series[s]->values[n * columns + column];
+        const double value = series[s]->values[n * columns + column];
+        raw_[n * width_ + s] = std::isnan(value) && series[s]->kind == "pressure" ? 0.0 : value;
       }
     }
   }

@@ -10,9 +10,9 @@ namespace sluice {
 
 /// A filtered column: one entry per sample of the series.
 struct Filtered {
-  std::vector<double> value;   ///< NaN where no wet sample lies within the window
-  std::vector<double> weight;  ///< sum of W_mn Dt_n, dimensionless: about 1 inside a wet stretch,
-                               ///< less at its ends, 0 without a value
+  std::vector<double> value;   ///< NaN where no sample that counts lies within the window
+  std::vector<double> weight;  ///< sum of W_mn Dt_n, dimensionless: about 1 where all samples
+                               ///< count, less at the ends, 0 without a value
 };
 
 /// The window of the time filter ends at this many tau: R < 3, as eq. 6 has it.
@@ -22,7 +22,9 @@ inline constexpr double kFilterReach = 3.0;
 /// weighted by the time Dt_n it stands for:
 ///   v_m = sum_n v_n W_mn Dt_n / sum_n W_mn Dt_n,  W_mn = exp(-((t_m - t_n)/tau)^2) / (sqrt(pi)
 ///   tau)
-/// Dry samples (NaN) are skipped. The first sample has none before it and stands for as long as the
+/// A dry sample (NaN) of a pressure counts as 0 Pa, which the air around the sensor has: an average
+/// over the wet samples alone would begin three tau before the fluid arrives. Of other kinds dry
+/// samples are skipped. The first sample has none before it and stands for as long as the
 /// second. O(samples * window). Throws std::invalid_argument when tau is not a positive number or
 /// the series has no such column.
 [[nodiscard]] Filtered gaussian_filter(const Series& series, double tau, std::size_t column = 0);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/store/errors.hpp"
 #include "engine/store/layout.hpp"
@@ -10,11 +11,23 @@
 namespace sluice {
 namespace {
 
-std::vector<float> single(const std::vector<double>& values) {
+std::vector<float> single(const std::vector<double>& values, double origin = 0.0) {
   std::vector<float> result(values.size());
   std::transform(values.begin(), values.end(), result.begin(),
-                 [](double value) { return static_cast<float>(value); });
+                 [origin](double value) { return static_cast<float>(value - origin); });
   return result;
+}
+
+double origin_of(const std::vector<double>& positions) {
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const double position : positions) {
+    if (!std::isfinite(position)) continue;
+    low = std::min(low, position);
+    high = std::max(high, position);
+  }
+  const double middle = low + 0.5 * (high - low);
+  return low <= high && std::abs(middle) > high - low ? middle : 0.0;
 }
 
 Bytes encode(const Frame& frame) {
@@ -27,8 +40,8 @@ Bytes encode(const Frame& frame) {
 Frame decode(ByteSpan image) {
   ReadArchive archive(image);
   Frame frame;
-  walk_format(archive, kFrameFormat);
-  walk_frame(archive, frame);
+  const std::uint64_t version = walk_format(archive, kFrameFormat);
+  walk_frame(archive, frame, version);
   archive.require_all_met();
   return frame;
 }
@@ -39,14 +52,15 @@ std::string frame_name(std::uint64_t index) { return fmt::format("frame-{:06}.h5
 
 Frame make_frame(const SolverState& state, const Method& method) {
   const Particles& particles = state.particles;
-  Frame frame{state.step,
-              state.time,
-              single(particles.x),
-              single(particles.y),
-              single(particles.vx),
-              single(particles.vy),
-              {},
-              {}};
+  Frame frame;
+  frame.step = state.step;
+  frame.time = state.time;
+  frame.origin_x = origin_of(particles.x);
+  frame.origin_y = origin_of(particles.y);
+  frame.x = single(particles.x, frame.origin_x);
+  frame.y = single(particles.y, frame.origin_y);
+  frame.vx = single(particles.vx);
+  frame.vy = single(particles.vy);
   const double c_squared = method.sound_speed * method.sound_speed;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     frame.pressure.push_back(static_cast<float>(c_squared * particles.density_excess[i]));

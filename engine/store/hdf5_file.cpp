@@ -112,6 +112,14 @@ template <>
 hid_t file_type<std::uint64_t>() {
   return H5T_STD_U64LE;
 }
+template <>
+hid_t file_type<std::int64_t>() {
+  return H5T_STD_I64LE;
+}
+template <>
+hid_t file_type<std::uint8_t>() {
+  return H5T_STD_U8LE;
+}
 
 ElementType element_type(hid_t type) {
   if (H5Tequal(type, H5T_IEEE_F64LE) > 0) {
@@ -359,6 +367,19 @@ class Hdf5Writer::Impl {
     set_attribute(path, name, check_.text_type().get(), space.get(), texts.data());
   }
 
+  template <class T>
+  void set_array(const std::string& path, const std::string& name, std::span<const T> values) {
+    const Handle space = simple_space({values.size()}, path);
+    set_attribute(path, name, file_type<T>(), space.get(), values.data());
+  }
+
+  void set_ascii(const std::string& path, const std::string& name, const std::string& value) {
+    const Handle type = check_.own(H5Tcopy(H5T_C_S1), H5Tclose, "make a type for", "texts");
+    check_.require(H5Tset_size(type.get(), value.size()) >= 0, "size the type for", "texts");
+    check_.require(H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0, "pad", "texts");
+    set_attribute(path, name, type.get(), scalar_space().get(), value.data());
+  }
+
   Bytes image() {
     check_.require(H5Fflush(file(), H5F_SCOPE_LOCAL) >= 0, "complete", "the file in memory");
     const ssize_t size = H5Fget_file_image(file(), nullptr, 0);
@@ -426,6 +447,22 @@ void Hdf5Writer::write(const std::string& path, std::span<const float> values,
 void Hdf5Writer::write(const std::string& path, std::span<const std::uint64_t> values,
                        const Extents& shape) {
   impl_->write(path, values, shape);
+}
+void Hdf5Writer::write(const std::string& path, std::span<const std::int64_t> values,
+                       const Extents& shape) {
+  impl_->write(path, values, shape);
+}
+void Hdf5Writer::write(const std::string& path, std::span<const std::uint8_t> values,
+                       const Extents& shape) {
+  impl_->write(path, values, shape);
+}
+void Hdf5Writer::set_attribute(const std::string& path, const std::string& name,
+                               std::span<const std::int64_t> values) {
+  impl_->set_array(path, name, values);
+}
+void Hdf5Writer::set_ascii(const std::string& path, const std::string& name,
+                           const std::string& value) {
+  impl_->set_ascii(path, name, value);
 }
 void Hdf5Writer::set_attribute(const std::string& path, const std::string& name, double value) {
   impl_->set_scalar(path, name, value);

@@ -45,6 +45,12 @@ class Hdf5Writer {
   void write(const std::string& path, std::span<const double> values, const Extents& shape);
   void write(const std::string& path, std::span<const float> values, const Extents& shape);
   void write(const std::string& path, std::span<const std::uint64_t> values, const Extents& shape);
+  /// For readers of other formats that insist on signed numbers, bytes, or texts of fixed length.
+  void write(const std::string& path, std::span<const std::int64_t> values, const Extents& shape);
+  void write(const std::string& path, std::span<const std::uint8_t> values, const Extents& shape);
+  void set_attribute(const std::string& path, const std::string& name,
+                     std::span<const std::int64_t> values);
+  void set_ascii(const std::string& path, const std::string& name, const std::string& value);
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, std::uint64_t value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& value);

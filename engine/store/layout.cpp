@@ -238,17 +238,21 @@ struct FrameField {
   std::vector<float> Frame::*member;
 };
 constexpr std::array kFrameFields{
-    FrameField{"x", "m", "position, horizontal", &Frame::x},
-    FrameField{"y", "m", "position, vertical", &Frame::y},
+    FrameField{"x", "m", "position from the origin, horizontal", &Frame::x},
+    FrameField{"y", "m", "position from the origin, vertical", &Frame::y},
     FrameField{"vx", "m/s", "velocity, horizontal", &Frame::vx},
     FrameField{"vy", "m/s", "velocity, vertical", &Frame::vy},
     FrameField{"pressure", "Pa", "pressure, eq. 3", &Frame::pressure},
 };
 
 template <class Archive, class Subject>
-void frame_layout(Archive& archive, Subject& frame) {
+void frame_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.attribute("/", "step", frame.step);
   archive.attribute("/", "time", frame.time);
+  if (version > 1) {
+    archive.attribute("/", "origin_x", frame.origin_x);
+    archive.attribute("/", "origin_y", frame.origin_y);
+  }
   archive.group("/particles");
   archive.count("/particles", "count", frame.x);
   const Extents shape{frame.x.size()};
@@ -309,7 +313,11 @@ void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables
   sample_tables(archive, tables);
 }
 
-void walk_frame(WriteArchive& archive, const Frame& frame) { frame_layout(archive, frame); }
-void walk_frame(ReadArchive& archive, Frame& frame) { frame_layout(archive, frame); }
+void walk_frame(WriteArchive& archive, const Frame& frame) {
+  frame_layout(archive, frame, kFrameFormat.version);
+}
+void walk_frame(ReadArchive& archive, Frame& frame, std::uint64_t version) {
+  frame_layout(archive, frame, version);
+}
 
 }  // namespace sluice

@@ -22,7 +22,7 @@ struct Format {
 };
 inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 5, 3};
 inline constexpr Format kSeriesFormat{"sluice-series", 2, 1};
-inline constexpr Format kFrameFormat{"sluice-frame", 1, 1};
+inline constexpr Format kFrameFormat{"sluice-frame", 2, 1};
 
 /// How a file keeps the samples: the first versions had a group for each sensor.
 enum class SampleLayout { by_sensor, tables };
@@ -59,6 +59,7 @@ void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables, Sample
 void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables);
 
 void walk_frame(WriteArchive& archive, const Frame& frame);
-void walk_frame(ReadArchive& archive, Frame& frame);
+/// The first version names no origin.
+void walk_frame(ReadArchive& archive, Frame& frame, std::uint64_t version);
 
 }  // namespace sluice

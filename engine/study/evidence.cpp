@@ -12,14 +12,6 @@ double time_unit(const Scene& scene) {
   return std::sqrt(scene.scales->height / scene.method.gravity.norm());
 }
 
-/// The series with zeros where it was dry.
-Series without_gaps(Series series) {
-  for (double& value : series.values) {
-    if (std::isnan(value)) value = 0.0;
-  }
-  return series;
-}
-
 /// First column over T, scaled; nothing filtered.
 Curve scaled_curve(const Series& series, const Scene& scene, double offset, double scale) {
   Curve curve;
@@ -79,9 +71,14 @@ std::vector<PressurePair> pair_pressures(const Scene& scene, const std::vector<S
 
 PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& reference,
                        double shift) {
+  const auto error = [&](std::span<const double> averages) {
+    return relative_l2(reference.pressure_times, averages, pair.reference->values,
+                       kComparisonWindow);
+  };
+  PressureEvidence evidence;
+  evidence.relative_l2_not_shifted = error(interval_averages(pair.curve, reference.pressure_times));
   for (double& time : pair.curve.time) time += shift;
   const auto averages = interval_averages(pair.curve, reference.pressure_times);
-  PressureEvidence evidence;
   evidence.sensor = pair.sensor->name;
   evidence.height = pair.sensor->position.y();
   evidence.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
@@ -94,26 +91,34 @@ PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& r
   evidence.simulation.peak = peak(pair.curve, kImpactWindow);
   evidence.experiment = measure(reference.pressure_times, pair.reference->values);
   evidence.experiment.arrival = pair.reference->arrival;
-  evidence.relative_l2 =
-      relative_l2(reference.pressure_times, averages, pair.reference->values, kComparisonWindow);
+  evidence.relative_l2 = error(averages);
   evidence.simulated = std::move(pair.curve);
   return evidence;
+}
+
+/// Nothing unless all of the experiment's sensors have one.
+std::optional<double> mean_of(const Evidence& evidence,
+                              std::optional<double> PressureEvidence::*error) {
+  if (evidence.pressures.size() != evidence.reference->pressures.size()) return std::nullopt;
+  double sum = 0.0;
+  for (const PressureEvidence& one : evidence.pressures) {
+    if (!(one.*error)) return std::nullopt;
+    sum += *(one.*error);
+  }
+  return sum / static_cast<double>(evidence.pressures.size());
 }
 
 void compare_pressures(Evidence& evidence, const Scene& scene, std::vector<PressurePair> pairs) {
   if (pairs.empty()) return;
   const auto arrival = first_passage(pairs.front().curve, kArrivalLevel, 1.0);
   if (arrival) evidence.shift = pairs.front().reference->arrival - *arrival;
-  double sum = 0.0;
-  bool complete = evidence.shift && pairs.size() == evidence.reference->pressures.size();
   for (PressurePair& pair : pairs) {
     evidence.pressures.push_back(
         weigh(std::move(pair), scene, *evidence.reference, evidence.shift.value_or(0.0)));
-    const auto& l2 = evidence.pressures.back().relative_l2;
-    complete = complete && l2;
-    sum += l2.value_or(0.0);
   }
-  if (complete) evidence.mean_relative_l2 = sum / static_cast<double>(evidence.pressures.size());
+  if (evidence.shift) evidence.mean_relative_l2 = mean_of(evidence, &PressureEvidence::relative_l2);
+  evidence.mean_relative_l2_not_shifted =
+      mean_of(evidence, &PressureEvidence::relative_l2_not_shifted);
 }
 
 void compare_levels(Evidence& evidence, const Scene& scene, const std::vector<Series>& all) {
@@ -174,7 +179,7 @@ std::optional<double> PressureEvidence::place_in_band() const {
 }
 
 Curve pressure_curve(const Series& series, const Scene& scene, double tau) {
-  Series filtered = without_gaps(series);
+  Series filtered = series;
   if (filtered.size() > 0) filtered.values = gaussian_filter(filtered, tau).value;
   filtered.columns.resize(1);
   const double unit =

@@ -41,8 +41,9 @@ struct PressureEvidence {
   PressureMeasures simulation;
   PressureMeasures experiment;  ///< of one test; its peak is peak_statistics' business
   PeakStatistics peak_statistics;
-  std::optional<double> relative_l2;
-  Curve simulated;  ///< P over T, filtered and shifted
+  std::optional<double> relative_l2;              ///< after the shift
+  std::optional<double> relative_l2_not_shifted;  ///< with the run's own times
+  Curve simulated;                                ///< P over T, filtered and shifted
 
   /// Where the simulated peak lies among the tests: 0 at the 2.5th, 1 at the 97.5th percentile.
   [[nodiscard]] std::optional<double> place_in_band() const;
@@ -69,13 +70,14 @@ struct Evidence {
   double time_unit = 0.0;       ///< s per unit of T: sqrt(h0/g)
   std::optional<double> shift;  ///< T added to all pressure times; absent: nothing arrived
   std::vector<PressureEvidence> pressures;
-  std::optional<double> mean_relative_l2;  ///< over all of the experiment's sensors
+  std::optional<double> mean_relative_l2;  ///< over all of the experiment's sensors, shifted
+  std::optional<double> mean_relative_l2_not_shifted;
   std::vector<LevelEvidence> levels;
   std::optional<FrontEvidence> front;
 };
 
-/// Pressure series as P over T: dry samples count as P = 0, the pressure of the air, then the time
-/// filter of eq. 12 with `tau` (s).
+/// Pressure series as P over T, after the time filter of eq. 12 with `tau` (s), in which dry
+/// samples count as 0: what `sluice sensors --filter gaussian` prints.
 [[nodiscard]] Curve pressure_curve(const Series& series, const Scene& scene, double tau);
 
 /// Compares `series` (raw) with an experiment that matches the scene (matching_reference). The

@@ -50,7 +50,7 @@ void fit(Chart& chart) {
   std::vector<double> x;
   for (const ChartLine& line : chart.lines) x.insert(x.end(), line.x.begin(), line.x.end());
   for (const ChartMarks& marks : chart.marks) x.insert(x.end(), marks.x.begin(), marks.x.end());
-  fit_axis(chart.x, x);
+  hold_axis(chart.x, x);
   fit_height(chart);
 }
 
@@ -135,14 +135,25 @@ Chart pressure_chart(const PressureEvidence& pressure, const Evidence& evidence,
   return chart;
 }
 
+/// The words for a sensor's kind in a heading.
+std::string quantity_of(std::string kind) {
+  std::replace(kind.begin(), kind.end(), '_', ' ');
+  return kind;
+}
+
+std::string heading_of(const std::string& name, const std::string& quantity) {
+  return name == quantity ? name : fmt::format("{}: {}", name, quantity);
+}
+
 Chart curve_chart(const CurveEvidence& one, const SeriesEvidence& evidence, std::size_t number) {
   const bool plain = evidence.units == ReferenceUnits::si;
   Chart chart;
   chart.id = id_of("curve", number);
-  chart.title = one.sensor;
-  chart.x.label = plain ? "time, s" : std::string(kTimeLabel);
-  chart.y.label = plain ? fmt::format("{}, {}", one.kind, one.unit)
-                        : fmt::format("{}, dimensionless", one.kind);
+  const std::string quantity = quantity_of(one.kind);
+  chart.title = heading_of(one.sensor, quantity);
+  chart.x.label = plain ? "time t, s" : std::string(kTimeLabel);
+  chart.y.label = plain ? fmt::format("{}, {}", quantity, one.unit)
+                        : fmt::format("{}, dimensionless", quantity);
   chart.lines.push_back(simulation_line(one.simulated));
   if (one.expected.time.size() > 60) {
     chart.lines.push_back({"reference", Ink::experiment, one.expected.time, one.expected.value});
@@ -173,9 +184,9 @@ Chart plain_chart(const Series& series, double tau, std::size_t number) {
   constexpr std::array kInks{Ink::first, Ink::second, Ink::third, Ink::fourth};
   Chart chart;
   chart.id = id_of("sensor", number);
-  chart.title = fmt::format("{} ({})", series.name, series.kind);
-  chart.x.label = "time, s";
-  chart.y.label = fmt::format("{}, {}", series.kind, series.columns[0].unit);
+  chart.title = heading_of(series.name, quantity_of(series.kind));
+  chart.x.label = "time t, s";
+  chart.y.label = fmt::format("{}, {}", quantity_of(series.kind), series.columns[0].unit);
   const bool many = series.columns.size() > 1;
   for (std::size_t column = 0; column < std::min(series.columns.size(), kInks.size()); ++column) {
     chart.lines.push_back({many ? series.columns[column].name : "", kInks[column], series.time,

@@ -1,13 +1,12 @@
 #include "engine/study/picture.hpp"
 
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+
+#include "engine/scene/geometry.hpp"
 
 namespace sluice {
 namespace {
@@ -28,42 +27,50 @@ constexpr std::array<Colour, 10> kViridis{{{68, 1, 84},
                                            {180, 222, 44},
                                            {253, 231, 37}}};
 
-Colour viridis(double share) {
+Rgb viridis(double share) {
   const double place = std::clamp(share, 0.0, 1.0) * (kViridis.size() - 1);
   const auto before = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
   const double part = place - static_cast<double>(before);
   const Colour& a = kViridis[before];
   const Colour& b = kViridis[before + 1];
-  return {a.red + part * (b.red - a.red), a.green + part * (b.green - a.green),
-          a.blue + part * (b.blue - a.blue)};
+  const auto between = [part](double from, double to) {
+    return static_cast<std::uint8_t>(std::lround(from + part * (to - from)));
+  };
+  return {between(a.red, b.red), between(a.green, b.green), between(a.blue, b.blue)};
 }
 
-std::uint8_t index_of(double pressure, const PictureFrame& how) {
-  const double share = (pressure - how.low) / (how.high - how.low);
-  return static_cast<std::uint8_t>(1.0 + std::round(254.0 * std::clamp(share, 0.0, 1.0)));
+std::uint8_t index_of(double value, const PictureFrame& how) {
+  const double share = std::clamp((value - how.low) / (how.high - how.low), 0.0, 1.0);
+  return static_cast<std::uint8_t>(kFirstColour +
+                                   std::lround(share * (kLastColour - kFirstColour)));
+}
+
+double pixels_per_metre(const PictureFrame& how) { return how.width / how.view.size().x(); }
+
+/// The middle of a pixel, m.
+Vec place_of(int column, int row, const PictureFrame& how) {
+  const double scale = pixels_per_metre(how);
+  return {how.view.min.x() + (column + 0.5) / scale, how.view.max.y() - (row + 0.5) / scale};
 }
 
 /// A canvas that remembers how near each pixel's particle is.
 class Canvas {
  public:
-  Canvas(const PictureFrame& how)
-      : scale_(how.width / how.view.size().x()), view_(how.view), radius_(0.75 * how.diameter) {
-    picture_.width = how.width;
-    picture_.height = std::max(1, static_cast<int>(std::lround(scale_ * how.view.size().y())));
-    const auto count =
-        static_cast<std::size_t>(picture_.width) * static_cast<std::size_t>(picture_.height);
-    picture_.pixels.assign(count, 0);
-    nearest_.assign(count, std::numeric_limits<float>::infinity());
-  }
+  Canvas(Picture& picture, const PictureFrame& how)
+      : scale_(pixels_per_metre(how)),
+        view_(how.view),
+        radius_(0.75 * how.diameter),
+        picture_(picture),
+        nearest_(picture.pixels.size(), std::numeric_limits<float>::infinity()) {}
 
-  void disc(double x, double y, std::uint8_t index) {
+  void disc(const Vec& place, std::uint8_t index) {
     // Small particles still mark the pixel that they lie in.
     const double reach = std::max(radius_ * scale_, 0.71);
-    const double column = (x - view_.min.x()) * scale_ - 0.5;
-    const double row = (view_.max.y() - y) * scale_ - 0.5;
+    const double column = (place.x() - view_.min.x()) * scale_ - 0.5;
+    const double row = (view_.max.y() - place.y()) * scale_ - 0.5;
     if (!(column > -reach && column < picture_.width + reach)) return;
     if (!(row > -reach && row < picture_.height + reach)) return;
-    const auto first = [](double place) { return std::max(0, static_cast<int>(std::ceil(place))); };
+    const auto first = [](double at) { return std::max(0, static_cast<int>(std::ceil(at))); };
     const int last_row = std::min(picture_.height - 1, static_cast<int>(row + reach));
     const int last_column = std::min(picture_.width - 1, static_cast<int>(column + reach));
     for (int j = first(row - reach); j <= last_row; ++j) {
@@ -72,8 +79,6 @@ class Canvas {
       }
     }
   }
-
-  Picture take() { return std::move(picture_); }
 
  private:
   void paint(int i, int j, double distance, double reach, std::uint8_t index) {
@@ -87,66 +92,99 @@ class Canvas {
   double scale_;  ///< pixels per metre
   Box view_;
   double radius_;
-  Picture picture_;
+  Picture& picture_;
   std::vector<float> nearest_;
 };
 
-}  // namespace
-
-Picture draw_particles(const Frame& frame, const PictureFrame& how) {
-  Canvas canvas(how);
-  for (std::size_t i = 0; i < frame.x.size(); ++i) {
-    canvas.disc(frame.x[i], frame.y[i], index_of(frame.pressure[i], how));
+/// Fills the pixels whose middle `holds`, within the rows and columns of `box`.
+template <class Holds>
+void fill(Picture& picture, const PictureFrame& how, const Box& box, std::uint8_t index,
+          const Holds& holds) {
+  const double scale = pixels_per_metre(how);
+  const auto bounded = [](double at, int size) {
+    return static_cast<int>(std::clamp(std::floor(at), 0.0, static_cast<double>(size)));
+  };
+  const int left = bounded((box.min.x() - how.view.min.x()) * scale, picture.width);
+  const int right = bounded((box.max.x() - how.view.min.x()) * scale + 1.0, picture.width);
+  const int top = bounded((how.view.max.y() - box.max.y()) * scale, picture.height);
+  const int bottom = bounded((how.view.max.y() - box.min.y()) * scale + 1.0, picture.height);
+  for (int row = top; row < bottom; ++row) {
+    for (int column = left; column < right; ++column) {
+      if (!holds(place_of(column, row, how))) continue;
+      picture.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
+                     static_cast<std::size_t>(column)] = index;
+    }
   }
-  return canvas.take();
 }
 
-std::string png_of(const Picture& picture) {
-  std::array<std::uint8_t, 4 * 256> palette{};
-  for (std::size_t i = 1; i < 256; ++i) {
-    const Colour colour = viridis(static_cast<double>(i - 1) / 254.0);
-    palette[4 * i] = static_cast<std::uint8_t>(std::lround(colour.red));
-    palette[4 * i + 1] = static_cast<std::uint8_t>(std::lround(colour.green));
-    palette[4 * i + 2] = static_cast<std::uint8_t>(std::lround(colour.blue));
-    palette[4 * i + 3] = 255;
+std::array<Rgb, 256> make_palette() {
+  std::array<Rgb, 256> palette{};
+  palette[kNothing] = {246, 248, 250};
+  for (int i = kFirstColour; i <= kLastColour; ++i) {
+    palette[static_cast<std::size_t>(i)] =
+        viridis((i - kFirstColour) / static_cast<double>(kLastColour - kFirstColour));
   }
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(picture.width);
-  image.height = static_cast<png_uint_32>(picture.height);
-  image.format = PNG_FORMAT_RGBA_COLORMAP;
-  image.colormap_entries = 256;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string bytes(size, '\0');
-  const int made = png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.pixels.data(),
-                                             0, palette.data());
-  if (made == 0) throw std::runtime_error(fmt::format("cannot make a PNG: {}", image.message));
-  bytes.resize(size);
-  return bytes;
+  palette[kSolid] = {140, 147, 156};
+  palette[kGate] = {207, 74, 36};
+  palette[kInk] = {27, 31, 36};
+  return palette;
+}
+
+}  // namespace
+
+Picture blank_picture(const PictureFrame& how) {
+  Picture picture;
+  picture.width = how.width;
+  picture.height =
+      std::max(1, static_cast<int>(std::lround(pixels_per_metre(how) * how.view.size().y())));
+  picture.pixels.assign(
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), kNothing);
+  return picture;
+}
+
+Picture draw_solids(const Scene& scene, const PictureFrame& how) {
+  Picture picture = blank_picture(how);
+  if (const auto& tank = scene.tank) {
+    fill(picture, how, how.view, kSolid, [&](const Vec& p) {
+      if (p.y() > tank->height) return !tank->open_top;
+      return p.y() < 0.0 || p.x() < 0.0 || p.x() > tank->width;
+    });
+  }
+  for (const Shape& obstacle : scene.obstacles) {
+    fill(picture, how, bounds(obstacle), kSolid,
+         [&](const Vec& p) { return contains(obstacle, p); });
+  }
+  return picture;
+}
+
+void draw_gate(Picture& picture, const Scene& scene, const PictureFrame& how, double time) {
+  if (!scene.gate) return;
+  const double edge = scene.gate->speed * time;
+  if (!(edge < scene.gate->height)) return;
+  const double thickness = std::max(scene.method.support(), 2.0 / pixels_per_metre(how));
+  const Box box{Vec(scene.gate->x, edge), Vec(scene.gate->x + thickness, scene.gate->height)};
+  fill(picture, how, box, kGate, [&](const Vec& p) { return box.contains(p); });
+}
+
+void draw_particles(Picture& picture, const Frame& frame, const PictureFrame& how) {
+  Canvas canvas(picture, how);
+  for (std::size_t i = 0; i < frame.x.size(); ++i) {
+    canvas.disc(frame.position(i), index_of(coloured_value(frame, i, how.quantity), how));
+  }
+}
+
+float coloured_value(const Frame& frame, std::size_t i, Quantity quantity) {
+  return quantity == Quantity::pressure ? frame.pressure[i] : std::hypot(frame.vx[i], frame.vy[i]);
+}
+
+const std::array<Rgb, 256>& picture_palette() {
+  static const std::array<Rgb, 256> palette = make_palette();
+  return palette;
 }
 
 std::string colour_of(double share) {
-  const Colour colour = viridis(share);
-  return fmt::format("#{:02x}{:02x}{:02x}", std::lround(colour.red), std::lround(colour.green),
-                     std::lround(colour.blue));
-}
-
-std::string base64(const std::string& bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8U | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? kDigits[group >> (18U - 6U * k) & 63U] : '=';
-    }
-  }
-  return text;
+  const Rgb colour = viridis(share);
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
 }  // namespace sluice

@@ -12,6 +12,7 @@
 #include "engine/store/job_folder.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/store/series_file.hpp"
+#include "engine/study/snapshots.hpp"
 
 namespace sluice {
 namespace {
@@ -20,6 +21,23 @@ namespace {
 constexpr std::size_t kMaxTextBytes = 1024 * 1024;
 
 bool is_filtered(const Series& series) { return series.kind == "pressure" && series.size() > 0; }
+
+/// Over the time of all samples that have a value.
+std::optional<double> mean_of_column(const Series& series, std::size_t column,
+                                     const std::vector<double>& smooth) {
+  double sum = 0.0;
+  double time = 0.0;
+  std::optional<double> last;
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    const double value =
+        smooth.empty() ? series.values[n * series.columns.size() + column] : smooth[n];
+    if (std::isnan(value)) continue;
+    sum += value * series.duration[n];
+    time += series.duration[n];
+    last = value;
+  }
+  return time > 0.0 ? std::optional(sum / time) : last;
+}
 
 /// `smooth` is the filtered column, empty where it is not filtered.
 SensorSummary summarise(const Series& series, std::size_t column,
@@ -31,14 +49,20 @@ SensorSummary summarise(const Series& series, std::size_t column,
   summary.column = series.columns[column].name;
   summary.unit = series.columns[column].unit;
   summary.samples = series.size();
+  summary.mean = mean_of_column(series, column, smooth);
   for (std::size_t n = 0; n < series.size(); ++n) {
     const double raw = series.values[n * width + column];
     if (std::isnan(raw)) continue;
     const double value = smooth.empty() ? raw : smooth[n];
-    if (!summary.first_wet) summary.first_wet = series.time[n];
+    // Where a scene names the pressure of the air there is a value without any fluid.
+    if (!summary.first_wet && series.weight[n] > 0.0) summary.first_wet = series.time[n];
     if (!summary.highest || value > *summary.highest) {
       summary.highest = value;
       summary.highest_at = series.time[n];
+    }
+    if (!summary.lowest || value < *summary.lowest) {
+      summary.lowest = value;
+      summary.lowest_at = series.time[n];
     }
     summary.last = value;
   }
@@ -93,16 +117,6 @@ const Reference* experiment_of(const Scene& scene) {
   if (!scene.reference) return matching_reference(scene);
   if (scene.reference->kind != ReferenceKind::experiment) return nullptr;
   return &reference_of(scene.reference->experiment);
-}
-
-/// Times of the pictures, s.
-std::vector<double> picture_times(const Scene& scene) {
-  const double gravity = scene.method.gravity.norm();
-  if (!scene.scales || gravity == 0.0) {
-    return {0.25 * scene.end_time, 0.75 * scene.end_time, scene.end_time};
-  }
-  const double unit = std::sqrt(scene.scales->height / gravity);
-  return {2.0 * unit, 5.9 * unit, 7.8 * unit};
 }
 
 std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
@@ -168,22 +182,10 @@ Report report_of_folder(const std::filesystem::path& folder, double tau) {
   return make_report(job.scene, job.series, job.outcome, tau);
 }
 
-std::vector<Frame> picture_frames(const std::filesystem::path& folder, const Scene& scene) {
+std::vector<Frame> picture_frames(const std::filesystem::path& folder, const Report& report) {
   std::vector<Frame> frames;
-  if (!scene.frames) return frames;
-  const JobPaths paths(folder);
-  std::uint64_t last = 0;
-  for (const double time : picture_times(scene)) {
-    const auto index = static_cast<std::uint64_t>(std::lround(time / scene.frames->interval));
-    if (time > scene.end_time * (1 + 1e-3) || (!frames.empty() && index == last)) continue;
-    last = index;
-    try {
-      if (std::filesystem::exists(paths.frame(index))) {
-        frames.push_back(read_frame(paths.frame(index)));
-      }
-    } catch (const StorageError&) {
-      continue;  // A report without one of its pictures is still worth having.
-    }
+  for (const std::filesystem::path& path : picture_files(folder, report)) {
+    if (auto frame = try_frame(path)) frames.push_back(*std::move(frame));
   }
   return frames;
 }
@@ -196,7 +198,7 @@ void publish_report(const std::filesystem::path& folder, const std::filesystem::
   publish_text(paths.report(), report_json(report).dump(2) + "\n");
   publish_text(paths.report_markdown(), report_markdown(report));
   publish_text(paths.report_html(),
-               report_html(report, job.series, picture_frames(folder, job.scene)));
+               report_html(report, job.series, picture_frames(folder, report)));
 }
 
 }  // namespace sluice

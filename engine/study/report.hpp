@@ -22,10 +22,13 @@ struct SensorSummary {
   std::string column;
   std::string unit;
   std::size_t samples = 0;
-  std::optional<double> first_wet;   ///< s
+  std::optional<double> first_wet;   ///< the first sample that saw fluid, s
   std::optional<double> highest;     ///< of the filtered series for a pressure, raw otherwise
   std::optional<double> highest_at;  ///< s
+  std::optional<double> lowest;      ///< of the same
+  std::optional<double> lowest_at;   ///< s
   std::optional<double> last;
+  std::optional<double> mean;  ///< over time, of the same as highest; dry pressures count as 0
 };
 
 /// What a run came to: its sensors, its comparison with a reference where it has one, its cost and
@@ -82,10 +85,10 @@ struct JobRecord {
 /// where nothing is compared.
 [[nodiscard]] std::string report_svg(const Report& report);
 
-/// The frames of a job nearest to the times of the paper's pictures (T = 2.0, 5.9, 7.8) or, without
-/// scales, to a quarter, three quarters and the end. A frame that cannot be read is left out.
+/// The snapshots that the report's pictures show (engine/study/snapshots.hpp). One that cannot be
+/// read is left out.
 [[nodiscard]] std::vector<Frame> picture_frames(const std::filesystem::path& folder,
-                                                const Scene& scene);
+                                                const Report& report);
 
 /// Makes a report of a finished or running job and publishes report.json, report.md and report.html
 /// in `target`. Throws what report_of_folder() and publish_text() throw.

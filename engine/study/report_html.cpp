@@ -73,8 +73,8 @@ std::string pictures_html(const std::vector<std::string>& svgs) {
   if (svgs.empty()) return {};
   std::string text =
       "<h2>Particles</h2>\n<p class=\"note\">coloured by pressure, one scale for all; what lies "
-      "above its end has the last colour, what is negative the first</p>\n<div "
-      "class=\"pictures\">\n";
+      "above its end has the last colour, what is negative the first. Solids are grey, the gate is "
+      "red. sluice report --format apng makes an animation</p>\n<div class=\"pictures\">\n";
   for (const std::string& svg : svgs) text += fmt::format("<figure>\n{}</figure>\n", svg);
   return text + "</div>\n";
 }
@@ -84,9 +84,9 @@ std::string pictures_html(const std::vector<std::string>& svgs) {
 std::string report_html(const Report& report, const std::vector<Series>& series,
                         const std::vector<Frame>& frames) {
   std::string text = head(report);
-  for (const Table& table : evidence_tables(report)) text += table_html(table);
   text += charts_html(report_charts(report, series), series.size());
   text += pictures_html(picture_svgs(report, frames));
+  for (const Table& table : evidence_tables(report)) text += table_html(table);
   for (const Table& table : run_tables(report)) text += table_html(table);
   return text + "</body>\n</html>\n";
 }

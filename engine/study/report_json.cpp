@@ -35,6 +35,7 @@ Json pressure_json(const PressureEvidence& one) {
               {"smoothing_length_m", one.smoothing_length},
               {"air_pressure_pa", value_of(one.air_pressure)},
               {"relative_l2", value_of(one.relative_l2)},
+              {"relative_l2_not_shifted", value_of(one.relative_l2_not_shifted)},
               {"simulation", measures_json(one.simulation)},
               {"experiment", measures_json(one.experiment)},
               {"peak_statistics",
@@ -68,6 +69,7 @@ Json evidence_json(const Evidence& evidence) {
               {"pressure_shift", value_of(evidence.shift)},
               {"comparison_window", {kComparisonWindow.from, kComparisonWindow.to}},
               {"mean_relative_l2", value_of(evidence.mean_relative_l2)},
+              {"mean_relative_l2_not_shifted", value_of(evidence.mean_relative_l2_not_shifted)},
               {"pressures", std::move(pressures)},
               {"levels", std::move(levels)},
               {"front", std::move(front)}};
@@ -151,7 +153,10 @@ Json sensor_json(const SensorSummary& sensor) {
               {"first_wet_s", value_of(sensor.first_wet)},
               {"highest", value_of(sensor.highest)},
               {"highest_at_s", value_of(sensor.highest_at)},
-              {"last", value_of(sensor.last)}};
+              {"lowest", value_of(sensor.lowest)},
+              {"lowest_at_s", value_of(sensor.lowest_at)},
+              {"last", value_of(sensor.last)},
+              {"mean", value_of(sensor.mean)}};
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "engine/run/guards.hpp"
 #include "engine/scene/plan.hpp"
+#include "engine/scene/vocabulary.hpp"
 #include "engine/sph/crowding.hpp"
 #include "engine/study/report_tables.hpp"
 
@@ -22,17 +26,37 @@ std::string percent(const std::optional<double>& share) {
 /// They are counted only where the lists say that they may be more.
 std::string neighbours_text(const std::optional<double>& most) {
   if (!most) return "-";
-  return *most > 0.0 ? brief(*most, 6) : fmt::format("at most {}", kManyNeighbours);
+  return *most > 0.0 ? brief(*most, 6)
+                     : fmt::format("not counted: never above {}", kManyNeighbours);
+}
+
+/// What the kinds among the sensors mean, where a word may be taken for something else.
+std::string definitions_of(const std::vector<SensorSummary>& sensors) {
+  std::string text;
+  for (const SensorKind kind : {SensorKind::surface_height, SensorKind::surge_front}) {
+    const std::string_view word = word_for(kSensorWords, kind);
+    if (std::none_of(sensors.begin(), sensors.end(),
+                     [&](const SensorSummary& one) { return one.kind == word; })) {
+      continue;
+    }
+    for (const auto& each : kSensorWords) {
+      if (each.value == kind) text += fmt::format("; {}: {}", word, each.about);
+    }
+  }
+  return text;
 }
 
 Table sensor_table(const Report& report) {
   Table table;
   table.title = "Sensors";
-  table.note = fmt::format("pressures filtered with tau = {:g} ms", report.tau * 1e3);
-  table.head = {"sensor", "kind", "column", "unit", "samples", "wet from, s", "highest", "at, s"};
+  table.note = fmt::format("pressures filtered with tau = {:g} ms{}", report.tau * 1e3,
+                           definitions_of(report.sensors));
+  table.head = {"sensor",      "kind",    "column", "unit",   "samples",
+                "wet from, s", "highest", "at, s",  "lowest", "at, s"};
   for (const SensorSummary& one : report.sensors) {
     table.rows.push_back({one.name, one.kind, one.column, one.unit, fmt::format("{}", one.samples),
-                          cell(one.first_wet, 4), brief(one.highest, 5), cell(one.highest_at, 4)});
+                          cell(one.first_wet, 4), brief(one.highest, 5), cell(one.highest_at, 4),
+                          brief(one.lowest, 5), cell(one.lowest_at, 4)});
   }
   return table;
 }
@@ -88,7 +112,7 @@ Table conservation_table(const Report& report) {
   table.note =
       "energies in J per metre of depth; the energy scale is what the fluid brings: "
       "kinetic and internal energy and its height above its lowest point";
-  table.head = {"", "value", "fails at"};
+  table.head = {"", "value", "the run fails beyond"};
   table.rows = {
       {"energy scale", brief(kept.energy_scale, 5), "-"},
       {"energy at the start", brief(kept.first_energy, 5), "-"},

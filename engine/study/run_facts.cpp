@@ -91,6 +91,7 @@ RunFacts run_facts(const Json& outcome) {
   facts.initial_energy = number_in(outcome, "/extremes/initial_energy");
   facts.highest_energy = number_in(outcome, "/extremes/highest_energy");
   facts.energy_scale = number_in(outcome, "/extremes/energy_scale");
+  facts.last_energy = number_in(outcome, "/energy");
   facts.passes = passes_in(outcome);
   find_cost(facts, outcome);
   find_digests(facts, outcome);
@@ -100,6 +101,9 @@ RunFacts run_facts(const Json& outcome) {
 Conservation conservation_of(const std::vector<Series>& series, const RunFacts& facts) {
   Conservation result;
   result.energy_scale = facts.energy_scale;
+  result.first_energy = facts.initial_energy;
+  result.last_energy = facts.last_energy;
+  result.highest_energy = facts.highest_energy;
   if (facts.particles && facts.overtopped && facts.leaked) {
     const double lost = *facts.overtopped + *facts.leaked + facts.excluded.value_or(0.0);
     const double all = *facts.particles + lost;

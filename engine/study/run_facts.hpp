@@ -31,15 +31,15 @@ struct RunFacts {
   std::vector<PassCost> passes;
   std::optional<double> max_speed, min_density_ratio, max_density_ratio, min_time_step,
       max_neighbours;
-  std::optional<double> initial_energy, highest_energy, energy_scale;
+  std::optional<double> initial_energy, highest_energy, last_energy, energy_scale;
   std::string physics_digest;
   std::vector<std::pair<std::string, std::string>> series_digests;
 };
 
 [[nodiscard]] RunFacts run_facts(const nlohmann::ordered_json& outcome);
 
-/// What a run may not make or lose. Energies in J per metre of depth; absent where no sensor of
-/// kind energy or no outcome tells.
+/// What a run may not make or lose. Energies in J per metre of depth; from the first
+/// sensor of kind energy, else from the outcome; absent where neither tells.
 struct Conservation {
   std::optional<double> first_energy, last_energy, highest_energy;  ///< total
   std::optional<double> energy_scale;  ///< what the fluid brings, see initial_baselines()

@@ -12,7 +12,7 @@ namespace {
 /// Times and values of the first column; what is dry is 0 or left out.
 Curve curve_of(Series series, double tau) {
   const bool pressure = series.kind == "pressure";
-  const bool dry_is_zero = pressure || series.kind == "surface_height";
+  const bool dry_is_zero = series.kind == "surface_height";
   const std::size_t width = series.columns.size();
   for (double& value : series.values) {
     if (dry_is_zero && std::isnan(value)) value = 0.0;

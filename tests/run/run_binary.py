@@ -498,11 +498,11 @@ class Reading(Sandbox):
         self.assertIn("--tau", self.expect(2, "sensors", "job", "P1", "--filter", "gaussian").stderr)
 
     def test_frames_are_exported_for_paraview_and_as_tables(self):
-        self.expect(0, "export", "job", "--format", "xdmf")
-        text = (self.folder / "job" / "frames" / "frames.xdmf").read_text()
-        self.assertEqual(text.count("<Time"), 3)
-        for name in re.findall(r">([^<>]*\.h5):", text):
-            self.assertTrue((self.folder / "job" / "frames" / name).exists())
+        self.expect(0, "export", "job", "--output", "para:view")
+        series = json.loads((self.folder / "para:view" / "frames.hdf.series").read_text())
+        self.assertEqual(len(series["files"]), 3)
+        for one in series["files"]:
+            self.assertTrue((self.folder / "para:view" / one["name"]).exists())
         self.expect(0, "export", "job", "--format", "csv", "--output", "tables")
         tables = sorted((self.folder / "tables").iterdir())
         self.assertEqual(len(tables), 3)

@@ -85,13 +85,25 @@ TEST(TimeFilter, WeightIsTheIntegralOfTheKernelInsideAndHalfOfItAtAnEnd) {
 }
 
 TEST(TimeFilter, SkipsDrySamplesAndGivesNoValueWhereAllAreDry) {
-  const Series series = series_of({0, 1, 2, 3, 10, 11}, {kDry, kDry, 5, 5, kDry, kDry});
+  Series series = series_of({0, 1, 2, 3, 10, 11}, {kDry, kDry, 5, 5, kDry, kDry});
+  series.kind = "surface_height";
   const Filtered filtered = gaussian_filter(series, 0.5);
   EXPECT_TRUE(std::isnan(filtered.value[0]));
   EXPECT_EQ(filtered.weight[0], 0.0);
   EXPECT_NEAR(filtered.value[1], 5.0, 1e-14);
   EXPECT_NEAR(filtered.value[3], 5.0, 1e-14);
   EXPECT_TRUE(std::isnan(filtered.value[4]));
+}
+
+TEST(TimeFilter, CountsADryPressureAsThatOfTheAirSoThatNothingArrivesBeforeTheFluid) {
+  const double tau = 1.0;
+  const Series series = series_of({0, 1, 2, 3}, {kDry, kDry, 5, 5});
+  const Filtered filtered = gaussian_filter(series, tau);
+  const double w1 = std::exp(-1.0);
+  const double w2 = std::exp(-4.0);
+  EXPECT_NEAR(filtered.value[0], 5.0 * w2 / (1.0 + w1 + w2), 1e-14);
+  EXPECT_NEAR(filtered.value[1], 5.0 * (w1 + w2) / (1.0 + 2.0 * w1 + w2), 1e-14);
+  EXPECT_EQ(gaussian_filter(series_of({0, 1}, {kDry, kDry}), tau).value[0], 0.0);
 }
 
 TEST(TimeFilter, SeesNothingAtOrBeyondThreeTau) {

@@ -43,6 +43,20 @@ TEST(Axis, IsUsableWithoutAnyValueAndWithOneValueOnly) {
   }
 }
 
+TEST(Axis, OfWhatHardlyChangesSpansATenthOfIt) {
+  Axis axis;
+  fit_axis(axis, {2943.0, 2943.2, 2942.9});
+  EXPECT_GE(axis.high - axis.low, 294.0);
+  EXPECT_LT(axis.high - axis.low, 1000.0);
+}
+
+TEST(Axis, OfTimesEndsWithThem) {
+  Axis axis;
+  hold_axis(axis, {0.0, 1.7, 4.013});
+  EXPECT_EQ(axis.low, 0.0);
+  EXPECT_EQ(axis.high, 4.013);
+}
+
 TEST(Axis, NumbersOfTicksHaveNoTrailingZeros) {
   EXPECT_EQ(tick_text(0.1 + 0.2), "0.3");
   EXPECT_EQ(tick_text(-2.0), "-2");
@@ -64,6 +78,17 @@ std::size_t count_of(const std::string& text, std::string_view what) {
   std::size_t count = 0;
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
   return count;
+}
+
+TEST(Chart, KeepsItsLabelClearOfLongNumbers) {
+  Chart chart = one_line({0, 10}, {0, 1});
+  chart.y = {"y", 1234.5, 1234.6};
+  const std::string svg = chart_svg(chart, SvgPlace::page);
+  double x = 0;
+  const auto rect = svg.find("<rect class=\"frame\"");
+  ASSERT_EQ(std::sscanf(svg.c_str() + rect, "<rect class=\"frame\" x=\"%lf\"", &x), 1);
+  // 1234.52 is seven digits of some 8 units; the label ends 20 units from the left.
+  EXPECT_GT(x, 20.0 + 7.0 + 7 * 8.0);
 }
 
 TEST(Chart, EscapesWhatAUserNamed) {

@@ -1,4 +1,5 @@
 #include "engine/study/picture.hpp"
+#include "engine/study/png.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -26,40 +27,46 @@ Frame frame_of(std::vector<float> x, std::vector<float> y, std::vector<float> pr
   return frame;
 }
 
+Picture drawn(const Frame& frame, const PictureFrame& how) {
+  Picture picture = blank_picture(how);
+  draw_particles(picture, frame, how);
+  return picture;
+}
+
 std::uint8_t pixel(const Picture& picture, int column, int row) {
   return picture.pixels.at(static_cast<std::size_t>(row * picture.width + column));
 }
 
 TEST(Picture, PutsAParticleWhereItIsWithTheFirstRowOnTop) {
-  const Picture picture = draw_particles(frame_of({0.25F}, {0.85F}, {100.0F}), unit_square(100));
+  const Picture picture = drawn(frame_of({0.25F}, {0.85F}, {100.0F}), unit_square(100));
   ASSERT_EQ(picture.width, 100);
   ASSERT_EQ(picture.height, 100);
-  EXPECT_EQ(pixel(picture, 25, 15), 255);
+  EXPECT_EQ(pixel(picture, 25, 15), kLastColour);
   EXPECT_EQ(pixel(picture, 25, 85), 0);
   EXPECT_EQ(pixel(picture, 75, 15), 0);
 }
 
 TEST(Picture, ColoursRunFromLowToHighAndStopThere) {
-  const Picture picture = draw_particles(
+  const Picture picture = drawn(
       frame_of({0.1F, 0.3F, 0.5F, 0.7F}, {0.5F, 0.5F, 0.5F, 0.5F}, {-50.0F, 0.0F, 50.0F, 900.0F}),
       unit_square(100));
   EXPECT_EQ(pixel(picture, 10, 49), 1);
   EXPECT_EQ(pixel(picture, 30, 49), 1);
-  EXPECT_EQ(pixel(picture, 50, 49), 128);
-  EXPECT_EQ(pixel(picture, 70, 49), 255);
+  EXPECT_EQ(pixel(picture, 50, 49), 127);
+  EXPECT_EQ(pixel(picture, 70, 49), kLastColour);
 }
 
 TEST(Picture, SurvivesParticlesOutOfViewAndWithoutAPlace) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float far = std::numeric_limits<float>::max();
-  const Picture picture = draw_particles(
-      frame_of({nan, far, -far, 2.0F}, {0.5F, 0.5F, nan, 2.0F}, {1.0F, 1.0F, 1.0F, nan}),
-      unit_square(50));
+  const Picture picture =
+      drawn(frame_of({nan, far, -far, 2.0F}, {0.5F, 0.5F, nan, 2.0F}, {1.0F, 1.0F, 1.0F, nan}),
+            unit_square(50));
   for (const std::uint8_t index : picture.pixels) EXPECT_EQ(index, 0);
 }
 
 TEST(Picture, IsAPngThatReadsBackWithItsColours) {
-  Picture picture{2, 1, {0, 255}};
+  Picture picture{2, 1, {kNothing, kLastColour}};
   const std::string bytes = png_of(picture);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -42,6 +42,50 @@ TEST(Report, SummarisesASensorByItsFirstWetItsHighestAndItsLastSample) {
   EXPECT_DOUBLE_EQ(*sensor.last, 1.0);
 }
 
+TEST(Report, HasTheLowestValueBesideTheHighest) {
+  Series level = probe();
+  level.values = {3.0, -2.0, kMissing, 1.0};
+  level.weight = {1.0, 1.0, 0.0, 1.0};
+  const SensorSummary sensor =
+      make_report(scene_of_no_experiment(), {level}, nullptr).sensors.at(0);
+  EXPECT_DOUBLE_EQ(*sensor.lowest, -2.0);
+  EXPECT_DOUBLE_EQ(*sensor.lowest_at, 1.0);
+  // Samples 1 and 3 stand for a second each, sample 0 for none.
+  EXPECT_DOUBLE_EQ(*sensor.mean, -0.5);
+}
+
+TEST(Report, IsWetFromWhereFluidIsSeenWhateverTheAirsPressure) {
+  Series pressure = probe();
+  pressure.kind = "pressure";
+  pressure.values = {0.0, 0.0, 700.0, 700.0};
+  pressure.weight = {0.0, 0.0, 0.4, 1.0};
+  EXPECT_DOUBLE_EQ(*make_report(scene_of_no_experiment(), {pressure}, nullptr).sensors[0].first_wet,
+                   2.0);
+}
+
+TEST(Report, TakesEnergiesFromTheOutcomeWhereNoSensorMeasuresThem) {
+  nlohmann::ordered_json outcome{{"energy", 9.0}};
+  outcome["extremes"] = {{"initial_energy", 10.0}, {"highest_energy", 11.0}, {"energy_scale", 5.0}};
+  const Conservation kept = conservation_of({}, run_facts(outcome));
+  EXPECT_EQ(kept.first_energy, 10.0);
+  EXPECT_EQ(kept.last_energy, 9.0);
+  EXPECT_EQ(kept.highest_energy, 11.0);
+}
+
+TEST(Report, SaysWhatASurgeFrontIs) {
+  Series front = probe();
+  front.kind = "surge_front";
+  EXPECT_NE(report_text(make_report(scene_of_no_experiment(), {front}, nullptr))
+                .find("largest x of any fluid particle"),
+            std::string::npos);
+}
+
+TEST(Report, HasItsFiguresBeforeItsTables) {
+  const Report report = make_report(scene_of_no_experiment(), {probe()}, nullptr);
+  const std::string page = report_html(report, {probe()}, {});
+  EXPECT_LT(page.find("<svg"), page.find("<table"));
+}
+
 TEST(Report, HasAPageWithABoundedNumberOfPlots) {
   std::vector<Series> many;
   for (std::size_t i = 0; i < 100; ++i) {
@@ -153,7 +197,7 @@ TEST(Report, HoldsWhatTheGuardsSawAgainstTheirLimits) {
                          {"max_neighbours", 0}};
   const Report report = make_report(scene_of_no_experiment(), {}, outcome);
   const std::string text = report_text(report);
-  for (const char* part : {"0.9300", "1.070", "2.5e-05", "at most 200"}) {
+  for (const char* part : {"0.9300", "1.070", "2.5e-05", "never above 200"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in:\n" << text;
   }
   EXPECT_EQ(report_json(report)["extremes"]["min_density_ratio"], 0.93);

@@ -55,6 +55,32 @@ TEST(StudyResult, FindsTheCheapestBelowEachTarget) {
   EXPECT_NE(study_text(result).find("none of these"), std::string::npos);
 }
 
+TEST(StudyResult, WithoutAReferenceShowsCostsAndTheDifferenceFromTheFinest) {
+  std::vector<StudyRun> runs;
+  std::vector<StudyRow> rows;
+  for (const double spacing : {0.04, 0.02, 0.01}) {
+    StudyRun run = run_of("dx " + std::to_string(spacing));
+    run.of_case = "base";
+    run.values = {{"/resolution/spacing", std::to_string(spacing)}};
+    run.scene.method.spacing = spacing;
+    runs.push_back(run);
+    StudyRow row = done(0.0, 1.0 / spacing);
+    row.error.reset();
+    row.reason = "no error: its scene has no reference";
+    row.quantities = {{"P1 mean", 100.0 * (1.0 - spacing)}, {"H mean", 2.0}};
+    rows.push_back(row);
+  }
+  const StudyResult result = evaluate(study_with({}), runs, rows);
+  EXPECT_DOUBLE_EQ(*result.setups[0].core_seconds, 25.0);
+  EXPECT_NEAR(*result.setups[0].difference, 0.5 * (99.0 - 96.0) / 99.0, 1e-12);
+  EXPECT_EQ(*result.setups[2].difference, 0.0);
+  ASSERT_EQ(result.convergence.size(), 2u);
+  EXPECT_NEAR(*result.convergence[0].richardson->order, 1.0, 1e-9);
+  const std::string text = study_text(result);
+  EXPECT_EQ(text.find("Runs without a result"), std::string::npos) << text;
+  EXPECT_NE(text.find("from the finest"), std::string::npos);
+}
+
 TEST(StudyResult, CountsNoFailedRunAndShowsItWithItsReason) {
   StudyRow failed;
   failed.state = RunState::failed;
