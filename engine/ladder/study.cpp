@@ -233,8 +233,11 @@ class Planner {
     for (const Problem& problem : parsed.problems) {
       problems_.add("", fmt::format("run {}: {}: {}", run.name, problem.pointer, problem.message));
     }
-    full_ = full_ || parsed.problems.size() >= kMaxProblems;
-    if (!parsed.scene) return;
+    if (!parsed.scene) {
+      refused_bytes_ += run.scene_text.size();
+      full_ = refused_bytes_ > kMostRefusedBytes;
+      return;
+    }
     run.scene = *std::move(parsed.scene);
     std::string readable = scene.dump(2) + "\n";
     if (readable.size() <= kMaxSceneBytes) run.scene_text = std::move(readable);
@@ -245,8 +248,12 @@ class Planner {
   Problems& problems_;
   std::vector<json> bases_;
   std::set<std::string> names_;
+  /// Once so much of it is wrong, the rest of a study is not looked at.
+  static constexpr std::size_t kMostRefusedBytes = std::size_t{1} << 20;
+
   std::size_t bytes_ = 0;  ///< of all scenes so far
-  bool full_ = false;      ///< what more would be found, nobody is told
+  std::size_t refused_bytes_ = 0;
+  bool full_ = false;
 };
 
 void check_values(const Study& study, std::size_t most, Problems& problems) {

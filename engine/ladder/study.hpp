@@ -13,7 +13,7 @@
 namespace sluice {
 
 inline constexpr std::size_t kMaxStudyRuns = 1000;
-inline constexpr std::size_t kMaxStudyBytes = std::size_t{16} << 20;  ///< of its scenes together
+inline constexpr std::size_t kMaxStudyBytes = std::size_t{8} << 20;  ///< of its scenes together
 
 /// A named way to change the base scene: values by JSON pointer, null leaves the key out.
 struct StudyCase {
