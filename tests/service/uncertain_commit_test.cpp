@@ -1,14 +1,12 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <filesystem>
 #include <string>
+#include <utility>
 
-#include "engine/scene/parse.hpp"
-#include "service/repair.hpp"
-#include "service/retention.hpp"
+#include "service/rebuild.hpp"
 #include "tests/service/api_support.hpp"
 
 namespace sluice::test {
@@ -16,6 +14,7 @@ namespace {
 
 /// Which fdatasync of this thread from now on fails once; 0: none. SQLite calls no other.
 thread_local int failing_sync = 0;
+thread_local int syncs = 0;
 
 }  // namespace
 }  // namespace sluice::test
@@ -24,6 +23,7 @@ thread_local int failing_sync = 0;
 extern "C" int fdatasync(int descriptor) {
   using Function = int (*)(int);
   static const auto real = reinterpret_cast<Function>(::dlsym(RTLD_NEXT, "fdatasync"));
+  ++sluice::test::syncs;
   int& countdown = sluice::test::failing_sync;
   if (countdown > 0 && --countdown == 0) {
     errno = EIO;
@@ -37,26 +37,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Row and folder of every job are both there, and the scene ends where the row says.
-void expect_agreement(Service& service) {
-  std::size_t folders = 0;
-  for (const auto& entry : fs::directory_iterator(service.data.path() / "jobs")) {
-    EXPECT_TRUE(service.store.find(entry.path().filename().string())) << entry.path();
-    ++folders;
-  }
-  const auto jobs = service.store.list({});
-  EXPECT_EQ(jobs.size(), folders);
-  for (const Job& job : jobs) {
-    const auto scene = parse_scene(read_file(service.data.job(job.id) / "scene.json"));
-    ASSERT_TRUE(scene.scene);
-    EXPECT_EQ(scene.scene->end_time, job.end_time) << job.id;
-  }
-}
-
 /// Does `action` with the first, second, ... sync failing until none fails any more. Returns how
 /// many did.
 template <class Prepare, class Action>
 int with_each_sync_failing(const Prepare& prepare, const Action& action) {
+  int done_all_the_same = 0;
   for (int n = 1;; ++n) {
     Service service;
     const std::string id = prepare(service);
@@ -66,8 +51,12 @@ int with_each_sync_failing(const Prepare& prepare, const Action& action) {
     SCOPED_TRACE(std::to_string(n) + ": " + std::to_string(response.status));
     expect_agreement(service);
     // Done, or nothing of it: asked again it is done, or there is nothing left to do.
-    if (none_failed) return n - 1;
+    if (none_failed) {
+      EXPECT_GT(done_all_the_same, 0);  // the sync after SQLite's commit point
+      return n - 1;
+    }
     const bool done = response.status < 300;
+    done_all_the_same += done ? 1 : 0;
     const Response again = action(service, id);
     EXPECT_TRUE(done ? again.status < 500 : again.status < 300) << again.body;
     expect_agreement(service);
@@ -139,57 +128,15 @@ TEST(AnUncertainCommit, OfACancelOrPauseIsWhatTheAnswerSays) {
   }
 }
 
-// --- killed in between: what the next start makes of it
-
-void repair(Service& service) { repair_folders(service.store, service.data.path()); }
-
-TEST(Repair, GivesASceneTheEndThatItsRowKnows) {
+TEST(ARebuild, WaitsForTheDiskOnceForManyJobs) {
   Service service;
-  const std::string id = service.submit_in(JobState::completed);
-  const fs::path scene = service.data.job(id) / "scene.json";
-  write_file(scene, with_end_time(read_file(scene), 5.0));
-  repair(service);
-  expect_agreement(service);
-}
-
-TEST(Repair, UndoesADeletionWhoseRowIsThereAndEndsOneWhoseRowIsGone) {
-  Service service;
-  const std::string kept = service.submit_in(JobState::completed);
-  const std::string gone = service.submit_in(JobState::completed);
-  for (const std::string& id : {kept, gone}) {
-    fs::rename(service.data.job(id), deleted_folder(service.data.path(), id));
-  }
-  service.store.remove(gone);
-  EXPECT_EQ(service.get("/v1/jobs/" + kept + "/sensors").status, 404);
-  repair(service);
-  expect_agreement(service);
-  EXPECT_EQ(service.get("/v1/jobs/" + kept + "/sensors").status, 200);
-  EXPECT_TRUE(cut_deletions(service.data.path()).empty());
-}
-
-TEST(Repair, RemovesTemporariesOfOursAndNothingElse) {
-  Service service;
-  const std::string id = service.submit_in(JobState::completed);
-  for (const char* const name : {".scene.json.4711.0.tmp", ".job.json.4711.3.tmp",
-                                 ".report.json.4711.12.tmp", "mine.tmp", ".mine.tmp"}) {
-    write_file(service.data.job(id) / name, "x");
-  }
-  repair(service);
-  std::size_t left = 0;
-  for (const auto& entry : fs::directory_iterator(service.data.job(id))) {
-    left += entry.path().extension() == ".tmp" ? 1 : 0;
-  }
-  EXPECT_EQ(left, 2u);
-}
-
-TEST(Repair, ReportsAFolderThatItCannotMend) {
-  Service service;
-  const std::string id = service.submit_in(JobState::completed);
-  write_file(service.data.job(id) / "scene.json", "rubbish");
-  std::string told;
-  repair_folders(service.store, service.data.path(),
-                 [&](const fs::path& folder, const std::string&) { told = folder.filename(); });
-  EXPECT_EQ(told, id);
+  for (int n = 0; n < 30; ++n) (void)service.submit("?priority=" + std::to_string(n));
+  const DataFolder other;
+  fs::copy(service.data.path() / "jobs", other.path() / "jobs", fs::copy_options::recursive);
+  JobStore store(other.path());
+  syncs = 0;
+  EXPECT_EQ(rebuild_from_folders(store, other.path()), 30u);
+  EXPECT_LT(syncs, 10);  // a transaction has four
 }
 
 }  // namespace
