@@ -13,6 +13,7 @@
 namespace sluice {
 
 inline constexpr std::size_t kMaxStudyRuns = 1000;
+inline constexpr std::size_t kMaxStudyBytes = std::size_t{8} << 20;  ///< of its scenes together
 
 /// A named way to change the base scene: values by JSON pointer, null leaves the key out; a
 /// term of the method is then left out too where the scheme has it.
@@ -70,7 +71,8 @@ using SceneLoader = std::string (*)(const std::string& name, const void* context
 /// predicted to be unstable are accepted: finding out is what a study is for. `origin` is that of
 /// the study: user's or one that was taken before. `load` may be null:
 /// then the scene must stand in the study itself. A study of more than `most` runs is refused
-/// before any is made.
+/// before any is made, one of more than kMaxStudyBytes as soon as that shows: what it takes of
+/// memory and time is bounded by these two.
 [[nodiscard]] StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context,
                                    std::size_t most = kMaxStudyRuns,
                                    SceneOrigin origin = SceneOrigin::user);

@@ -1,7 +1,9 @@
 #include "tests/service/api_support.hpp"
 
 #include <cmath>
+#include <filesystem>
 
+#include "engine/scene/parse.hpp"
 #include "engine/store/series_file.hpp"
 #include "service/http_head.hpp"
 
@@ -85,6 +87,21 @@ void expect_problem(const Response& response, int status, std::string_view slug)
   EXPECT_EQ(body.value("status", 0), status);
   EXPECT_FALSE(body.value("title", "").empty());
   EXPECT_FALSE(body.value("detail", "").empty());
+}
+
+void expect_agreement(Service& service) {
+  std::size_t folders = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(service.data.path() / "jobs")) {
+    EXPECT_TRUE(service.store.find(entry.path().filename().string())) << entry.path();
+    ++folders;
+  }
+  const auto jobs = service.store.list({});
+  EXPECT_EQ(jobs.size(), folders);
+  for (const Job& job : jobs) {
+    const auto scene = parse_scene(read_file(service.data.job(job.id) / "scene.json"));
+    ASSERT_TRUE(scene.scene);
+    EXPECT_EQ(scene.scene->end_time, job.end_time) << job.id;
+  }
 }
 
 Series pressure_series(const std::vector<double>& values) {

@@ -50,6 +50,9 @@ class Service {
 /// Expects a problem of this type, with what RFC 9457 and the table of problems say.
 void expect_problem(const Response& response, int status, std::string_view slug);
 
+/// Expects row and folder of every job to be both there, and its scene to end where the row says.
+void expect_agreement(Service& service);
+
 /// Samples 0, 0.001, ... of a pressure sensor P1 with these values.
 [[nodiscard]] Series pressure_series(const std::vector<double>& values);
 
