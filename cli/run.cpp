@@ -12,8 +12,10 @@
 #include "cli/machine.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
+#include "engine/run/insist.hpp"
 #include "engine/run/reporter.hpp"
 #include "engine/run/run_loop.hpp"
+#include "engine/store/file_system.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/study/report.hpp"
 
@@ -131,12 +133,17 @@ void remove_report(const JobPaths& paths) {
 
 /// Leaves the report beside the results, for those who only read files. What goes wrong here makes
 /// no run a failure: `sluice report` can make it again.
-void leave_report(const JobPaths& paths, const Outcome& outcome) {
+void leave_report(const JobPaths& paths, const Outcome& outcome, double patience) {
   if (outcome.exit_code != ExitCode::done) return;
   // The run is safe: being asked to stop now is no reason to end as if it were not.
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) std::signal(number, SIG_IGN);
   try {
-    publish_report(paths.root(), paths.root());
+    insist(
+        patience, [&] { publish_report(paths.root(), paths.root()); },
+        [](const StorageError& error, double wait) {
+          fmt::print(stderr, "sluice: no report yet, next try in {:.1f} s: {}\n", wait,
+                     error.what());
+        });
   } catch (const std::exception& error) {
     fmt::print(stderr, "sluice: no report: {}; sluice report {} makes it\n", error.what(),
                paths.root().string());
@@ -150,7 +157,7 @@ void run(const RunArguments& arguments) {
   const auto reporter = make_reporter(form);
   const Outcome outcome =
       run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
-  leave_report(job.folder.paths(), outcome);
+  leave_report(job.folder.paths(), outcome, arguments.storage_patience);
   // Stdout belongs to the JSON lines where they are written.
   std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
   // A reader who went away is no error of a run that is safe on disk.
@@ -159,6 +166,16 @@ void run(const RunArguments& arguments) {
   if (outcome.exit_code == ExitCode::done) return;
   const bool stopped = outcome.exit_code == ExitCode::checkpointed;
   throw CommandEnd(outcome.exit_code, stopped ? "" : outcome.reason);
+}
+
+/// What the system cannot look at is a storage failure, not missing: to a service that tells them
+/// apart, a job whose folder is missing has failed.
+CLI::Validator existing_path() {
+  return {[](const std::string& text) {
+            return is_present(text) ? std::string()
+                                    : fmt::format("there is no file or folder {}", text);
+          },
+          "PATH"};
 }
 
 void add_test_options(CLI::App& verb, RunArguments& arguments) {
@@ -188,7 +205,7 @@ void add_run(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("run", "Run a scene, or go on with the job in a folder");
   verb->add_option("target", arguments->target, "A scene (JSON) or a job's folder")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(existing_path());
   verb->add_option("--folder", arguments->folder,
                    "The job's folder for a scene; by default the scene's name in this folder");
   add_execution_options(*verb, arguments->threads, arguments->simd);

@@ -29,15 +29,10 @@ constexpr std::uint64_t kLargestScene = std::uint64_t{1} << 24;
 template <class Wanted>
 std::vector<fs::path> list(const fs::path& folder, const Wanted& wanted) {
   std::vector<fs::path> found;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (wanted(entry->path().filename().string())) {
-      found.push_back(entry->path());
+  for (const fs::directory_entry& entry : entries_of(folder)) {
+    if (wanted(entry.path().filename().string())) {
+      found.push_back(entry.path());
     }
-  }
-  if (error && error != std::errc::no_such_file_or_directory) {
-    throw system_error("cannot list the folder", folder, error.value());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -52,8 +47,9 @@ std::uint64_t step_of(const fs::path& path) {
 // --- the lock
 
 FileDescriptor open_lock(const fs::path& path) {
-  FileDescriptor descriptor(
-      ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+  FileDescriptor descriptor(uninterrupted([&] {
+    return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  }));
   if (descriptor.get() >= 0) {
     return descriptor;
   }
@@ -98,10 +94,7 @@ std::string holder(const FileDescriptor& descriptor) {
 }
 
 void lock_or_throw(const FileDescriptor& descriptor, const fs::path& path) {
-  int result = 0;
-  do {
-    result = ::flock(descriptor.get(), LOCK_EX | LOCK_NB);
-  } while (result != 0 && errno == EINTR);
+  const int result = uninterrupted([&] { return ::flock(descriptor.get(), LOCK_EX | LOCK_NB); });
   if (result != 0 && errno == EWOULDBLOCK) {
     throw StorageError(StorageFault::locked,
                        fmt::format("{}: this job is being run by {}; wait for it or stop it first",
@@ -224,7 +217,7 @@ JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
   JobFolder job(JobPaths(folder), system);
   require_free_folder(folder);
   job.publish_text(job.paths_.scene(), scene_text);
-  fs::create_directory(job.paths_.frames());
+  storing([&] { fs::create_directory(job.paths_.frames()); });
   return job;
 }
 
@@ -240,8 +233,7 @@ JobFolder JobFolder::open(const fs::path& folder, FileSystem& system) {
 }
 
 bool JobFolder::holds_job(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_regular_file(JobPaths(folder).scene(), ignored);
+  return file_type_at(JobPaths(folder).scene()) == fs::file_type::regular;
 }
 
 std::string JobFolder::scene_text() const { return read_text(paths_.scene(), kLargestScene); }

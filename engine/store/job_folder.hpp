@@ -76,7 +76,7 @@ class JobFolder {
   /// when there is no scene in it; unwritable, locked, io.
   [[nodiscard]] static JobFolder open(const std::filesystem::path& folder,
                                       FileSystem& system = FileSystem::real());
-  /// Whether `open` would find a job there.
+  /// Whether `open` would find a job there. Throws StorageError when the system cannot tell.
   [[nodiscard]] static bool holds_job(const std::filesystem::path& folder);
 
   [[nodiscard]] const JobPaths& paths() const { return paths_; }
