@@ -158,6 +158,7 @@ void run(const RunArguments& arguments) {
   const Outcome outcome =
       run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
   leave_report(job.folder.paths(), outcome, arguments.storage_patience);
+  job.folder.remove_leftovers();
   // Stdout belongs to the JSON lines where they are written.
   std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
   // A reader who went away is no error of a run that is safe on disk.

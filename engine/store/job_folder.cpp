@@ -201,8 +201,12 @@ FolderLock::FolderLock(const fs::path& path) : descriptor_(take_lock(path)) {}
 
 JobFolder::JobFolder(JobPaths paths, FileSystem& system)
     : paths_(std::move(paths)), lock_(paths_.lock()), system_(&system) {
-  remove_leftovers(paths_.root());
-  remove_leftovers(paths_.frames());
+  remove_leftovers();
+}
+
+void JobFolder::remove_leftovers() const {
+  sluice::remove_leftovers(paths_.root());
+  sluice::remove_leftovers(paths_.frames());
 }
 
 JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,

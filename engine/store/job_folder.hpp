@@ -96,6 +96,9 @@ class JobFolder {
   /// damaged is renamed to `.bad` and does not count.
   std::vector<std::filesystem::path> prune();
 
+  /// Removes what killed processes left, and what failed writes of this one could not remove.
+  void remove_leftovers() const;
+
   /// Publishes a text in this folder, such as outcome.json.
   void publish_text(const std::filesystem::path& path, std::string_view text);
 

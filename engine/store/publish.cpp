@@ -194,13 +194,16 @@ void publish_text(const fs::path& target, std::string_view text, FileSystem& sys
 
 std::size_t remove_leftovers(const fs::path& folder) {
   std::size_t removed = 0;
-  for (const fs::directory_entry& entry : entries_of(folder)) {
-    std::error_code ignored;  // what cannot be removed now is found again by the next holder
-    if (is_temporary_name(entry.path().filename().string()) &&
-        entry.symlink_status(ignored).type() == fs::file_type::regular &&
-        fs::remove(entry.path(), ignored)) {
-      ++removed;
+  std::error_code ignored;  // what cannot be removed now, the next holder finds again
+  try {
+    for (const fs::directory_entry& entry : entries_of(folder)) {
+      if (is_temporary_name(entry.path().filename().string()) &&
+          entry.symlink_status(ignored).type() == fs::file_type::regular &&
+          fs::remove(entry.path(), ignored)) {
+        ++removed;
+      }
     }
+  } catch (const StorageError&) {
   }
   return removed;
 }

@@ -10,7 +10,7 @@ KINDS = ("", "open", "read", "write", "sync", "close", "rename", "remove", "mkdi
          "pipe")
 KILL, SHORT = -1, -2
 MOST_CALLS = 1 << 20
-HEAD = struct.Struct("=IIIiII488s")  # struct Control of interpose.c, without the kinds of calls
+HEAD = struct.Struct("=IIIIiII484s")  # struct Control of interpose.c, without the kinds of calls
 
 # What can happen to a call of each kind. EINTR only where Linux or a network file system gives it.
 FITTING = {
@@ -39,6 +39,8 @@ def fitting(kind):
 class Control:
     """Shared with a program that runs with `environment()`."""
 
+    burst = 1  # so many calls in a row fail
+
     def __init__(self, library, path, quick=True):
         self.library = library
         self.path = os.fspath(path)
@@ -54,11 +56,11 @@ class Control:
 
     def arm(self, at=0, fault=0):
         """From now on calls are counted; the `at`-th fails. With 0 none does."""
-        HEAD.pack_into(self.memory, 0, 0, 0, at, fault, 0, self.quick, b"")
+        HEAD.pack_into(self.memory, 0, 0, 0, at, self.burst, fault, 0, self.quick, b"")
         self.memory[0:4] = struct.pack("=I", 1)
 
     def disarm(self):
-        HEAD.pack_into(self.memory, 0, 0, 0, 0, 0, 0, self.quick, b"")
+        HEAD.pack_into(self.memory, 0, 0, 0, 0, 0, 0, 0, self.quick, b"")
 
     def stop(self):
         """Counts no more; what was counted stays to be read."""
@@ -68,10 +70,10 @@ class Control:
         return HEAD.unpack_from(self.memory)
 
     def fired(self):
-        return self._head()[4] != 0
+        return self._head()[5] != 0
 
     def what(self):
-        return self._head()[6].rstrip(b"\0").decode(errors="replace")
+        return self._head()[7].rstrip(b"\0").decode(errors="replace")
 
     def calls(self):
         """The kinds of all calls since it was armed."""

@@ -38,10 +38,11 @@ struct Control {
   _Atomic uint32_t counting;   /* 0: nothing is counted, nothing fails */
   _Atomic uint32_t count;      /* calls so far */
   _Atomic uint32_t at;         /* the call that fails, from 1; 0: none */
+  uint32_t burst;              /* so many calls from that one on fail, as far as the fault fits them */
   _Atomic int32_t fault;       /* errno, KILL or SHORT */
   _Atomic uint32_t fired;      /* 1 once it did */
   uint32_t quick;              /* 1: sleeps take a hundredth of their time, nothing is synced */
-  char what[488];              /* the call that failed, for people */
+  char what[484];              /* the call that failed, for people */
   uint8_t kinds[MOST_CALLS];   /* of all calls */
 };
 
@@ -64,12 +65,31 @@ __attribute__((constructor)) static void start(void) {
   control = shared;
 }
 
+/* Whether a fault that was meant for another kind of call can happen to this one, too. */
+static int fits(enum Kind kind) {
+  switch (control->fault) {
+    case EIO:
+      return 1;
+    case ENOSPC:
+      return kind == WRITE || kind == SYNC || kind == RENAME || kind == MKDIR;
+    case EMFILE:
+      return kind == OPEN || kind == PIPE;
+    case EINTR:
+      return kind == OPEN || kind == READ || kind == WRITE || kind == SYNC;
+    case SHORT:
+      return kind == READ || kind == WRITE;
+    default:
+      return 0;
+  }
+}
+
 /* The fault of this call; 0 for none. */
 static int fault_of(enum Kind kind, const char* name, const char* path, int descriptor) {
   if (!control || !control->counting) return 0;
   const uint32_t number = ++control->count;
   if (number < MOST_CALLS) control->kinds[number] = (uint8_t)kind;
-  if (number != control->at) return 0;
+  if (control->at == 0 || number < control->at || number - control->at >= control->burst) return 0;
+  if (number > control->at) return fits(kind) ? control->fault : 0;
   char link[32];
   char target[256] = "";
   if (!path) {

@@ -61,8 +61,10 @@ def main():
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--operation")
+    parser.add_argument("--burst", type=int, default=1, help="so many calls in a row fail")
     parser.add_argument("--only", type=int, help="only faults at this call")
     arguments = parser.parse_args()
+    faults.Control.burst = arguments.burst
     if is_sanitized(arguments.sluice):
         print("skipped: sanitized")
         return SKIPPED
