@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "cli/scene_file.hpp"
@@ -12,6 +11,7 @@
 #include "engine/store/checkpoint_io.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/series_file.hpp"
+#include "engine/study/report.hpp"
 
 namespace sluice {
 
@@ -43,10 +43,8 @@ std::vector<Series> JobData::series() const {
 
 bool JobData::completed() const {
   if (!std::filesystem::exists(paths_.outcome())) return false;
-  const auto outcome =
-      nlohmann::json::parse(read_text(paths_.outcome(), 1 << 20), nullptr, /*exceptions=*/false);
-  if (!outcome.is_object() || !outcome.contains("state")) return false;
-  return outcome["state"] == "completed";
+  const auto outcome = read_outcome(paths_.root());
+  return outcome.is_object() && outcome.contains("state") && outcome["state"] == "completed";
 }
 
 const Series& find_series(const std::vector<Series>& all, const std::string& name) {

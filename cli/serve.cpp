@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -11,8 +12,11 @@
 #include "cli/stop_signals.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/errors.hpp"
+#include "service/admission.hpp"
 #include "service/api.hpp"
+#include "service/descriptor_budget.hpp"
 #include "service/rebuild.hpp"
+#include "service/repair.hpp"
 #include "service/service_log.hpp"
 #include "service/time_slice.hpp"
 
@@ -54,6 +58,7 @@ void adopt_folders(JobStore& store, const std::filesystem::path& data) {
   const auto report = [](const std::filesystem::path& folder, const std::string& why) {
     log_line({{"event", "folder_passed_over"}, {"folder", folder.string()}, {"message", why}});
   };
+  repair_folders(store, data, report);
   const std::size_t adopted = rebuild_from_folders(store, data, report);
   if (adopted > 0) log_line({{"event", "folders_adopted"}, {"jobs", adopted}});
 }
@@ -85,8 +90,31 @@ void bound_memory() {
   mallopt(M_TRIM_THRESHOLD, 1024 * 1024);
 }
 
+/// Fewer connections where the system lets the service open few files.
+void fit_to_descriptors(ServeOptions& options) {
+  const std::uint64_t limit = raise_descriptor_limit();
+  const int workers = thread_limit(options.limits);
+  const int connections = connections_within(limit, workers);
+  if (connections < 1) {
+    throw CommandEnd(
+        ExitCode::usage,
+        fmt::format("this process may open {} files at once (ulimit -n); a service with "
+                    "{} cores needs at least {}: raise the limit",
+                    limit, workers, least_descriptor_limit(workers)));
+  }
+  if (connections >= options.http.connections) return;
+  options.http.connections = connections;
+  options.http.large_answers = std::min(options.http.large_answers, std::max(1, connections / 2));
+  log_line(
+      {{"event", "few_descriptors"},
+       {"message", fmt::format("this process may open {} files at once (ulimit -n), so at most "
+                               "{} clients are served at once",
+                               limit, connections)}});
+}
+
 void serve(ServeOptions& options) {
   bound_memory();
+  fit_to_descriptors(options);
   // Before any thread starts: requests are answered while workers fill all cores.
   ask_for_slices(kShortestSlice);
   // First, so that no thread or child starts before the actions are set.

@@ -133,6 +133,7 @@ ProblemType problem_of(JobStoreError::Fault fault) {
     case in_use:
     case damaged:
     case newer_version:
+    case uncertain:
     case io:
       break;
   }
@@ -143,16 +144,6 @@ ProblemType problem_of(StorageFault fault) {
   if (fault == StorageFault::disk_full) return ProblemType::disk_full;
   if (fault == StorageFault::locked) return ProblemType::wrong_state;
   return ProblemType::internal;
-}
-
-/// Without the place of the data folder, which is nobody's business but the administrator's.
-std::string without_place(std::string text, const std::filesystem::path& data) {
-  const std::string place = data.string();
-  for (auto at = text.find(place); at != text.npos; at = text.find(place, at)) {
-    const bool inside = text.compare(at + place.size(), 1, "/") == 0;
-    text.replace(at, place.size() + (inside ? 1 : 0), inside ? "" : "the data folder");
-  }
-  return text;
 }
 
 /// What went wrong on the service's side: all of it for the log, and without our paths for the
@@ -170,6 +161,23 @@ Response service_failure(const ApiContext& context, const Request& request, Prob
   return response;
 }
 
+/// For a request that failed because the files of its job are gone.
+std::optional<Response> answer_for_lost_files(const ApiContext& context, const Request& request) {
+  constexpr std::string_view kJobs = "/v1/jobs/";
+  if (!request.path.starts_with(kJobs)) return std::nullopt;
+  const std::string id =
+      request.path.substr(kJobs.size(), request.path.find('/', kJobs.size()) - kJobs.size());
+  std::error_code ignored;
+  const auto folder = context.paths(id).root();
+  const bool lost = is_job_id(id) && std::filesystem::exists(folder.parent_path(), ignored) &&
+                    !std::filesystem::exists(folder, ignored);
+  if (!lost) return std::nullopt;
+  return problem_response(
+      ProblemType::no_such_job,
+      fmt::format("the files of job {} are gone: it was deleted, or somebody removed its folder",
+                  id));
+}
+
 Response handle_or_fail(ApiContext& context, const Request& request) {
   try {
     return route(context, request);
@@ -180,15 +188,26 @@ Response handle_or_fail(ApiContext& context, const Request& request) {
   } catch (const JobStoreError& error) {
     return service_failure(context, request, problem_of(error.fault()), error.what());
   } catch (const StorageError& error) {
+    if (auto answer = answer_for_lost_files(context, request)) return *std::move(answer);
     return service_failure(context, request, problem_of(error.fault()), error.what());
   } catch (const std::bad_alloc&) {
     return problem_response(ProblemType::overloaded, "the service is out of memory");
   } catch (const std::exception& error) {
+    if (auto answer = answer_for_lost_files(context, request)) return *std::move(answer);
     return service_failure(context, request, ProblemType::internal, error.what());
   }
 }
 
 }  // namespace
+
+std::string without_place(std::string text, const std::filesystem::path& data) {
+  const std::string place = data.string();
+  for (auto at = text.find(place); at != text.npos; at = text.find(place, at)) {
+    const bool inside = text.compare(at + place.size(), 1, "/") == 0;
+    text.replace(at, place.size() + (inside ? 1 : 0), inside ? "" : "the data folder");
+  }
+  return text;
+}
 
 std::span<const Route> all_routes() { return kRoutes; }
 

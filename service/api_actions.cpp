@@ -12,6 +12,7 @@
 #include "service/api_routes.hpp"
 #include "service/job_json.hpp"
 #include "service/query.hpp"
+#include "service/repair.hpp"
 
 namespace sluice {
 namespace {
@@ -66,14 +67,6 @@ std::optional<double> read_end_time(const std::string& body) {
   return end_time;
 }
 
-/// The scene's text with another end time.
-std::string extended_scene(const std::string& text, double end_time) {
-  Json scene = Json::parse(text);
-  scene["end_time"] = end_time;
-  std::string extended = scene.dump(2) + "\n";
-  return extended.size() > kMaxSceneBytes ? scene.dump() : extended;
-}
-
 /// What an extension replaces, and with what.
 struct Extension {
   std::string scene_before;
@@ -85,15 +78,14 @@ struct Extension {
 Extension replace_end_time(const ApiContext& context, Job job, double end_time) {
   JobFolder folder = JobFolder::open(context.paths(job.id).root());
   std::string before = folder.scene_text();
-  const std::string extended = extended_scene(before, end_time);
+  const std::string extended = with_end_time(before, end_time);
   const Admitted admitted = admit_scene(extended, context.scheduler.limits());
   describe_scene(job, admitted.scene, admitted.estimate);
   folder.publish_text(folder.paths().scene(), extended);
   return {std::move(before), std::move(job.estimate)};
 }
 
-/// Resumes are taken one at a time: what a job is when its scene is changed, it is until its row
-/// is.
+/// For one who is alone with the job: what it is when its scene is changed, it is until its row is.
 Response extend(ApiContext& context, const Job& job, double end_time) {
   if (job.state == JobState::running || job.state == JobState::queued) {
     throw ApiError(ProblemType::wrong_state,
@@ -112,7 +104,8 @@ Response extend(ApiContext& context, const Job& job, double end_time) {
   change.event_detail = Json{{"end_time", end_time}}.dump();
   try {
     return answer(context, context.store.apply(job.id, JobAction::resume, "", change));
-  } catch (...) {
+  } catch (const JobStoreError& error) {
+    if (error.fault() == JobStoreError::Fault::uncertain) throw;
     JobFolder folder = JobFolder::open(context.paths(job.id).root());
     folder.publish_text(folder.paths().scene(), extension.scene_before);
     throw;
@@ -132,7 +125,8 @@ Response pause_job(ApiContext& context, const RouteRequest& request) {
 Response resume_job(ApiContext& context, const RouteRequest& request) {
   QueryReader(request.http).finish();
   const auto end_time = read_end_time(request.http.body);
-  const std::scoped_lock one_at_a_time(context.resumes);
+  (void)find_job(context, request.parts[0]);
+  const auto alone = context.store.alone_with(request.parts[0]);
   const Job job = find_job(context, request.parts[0]);
   if (!end_time) return act(context, job.id, JobAction::resume, {});
   Response response = extend(context, job, *end_time);

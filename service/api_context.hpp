@@ -47,7 +47,6 @@ struct ApiContext {
   Slots waits{kMaxWaits};
   std::counting_semaphore<kMaxViews> views{kMaxViews};
   std::atomic<bool> draining = false;
-  std::mutex resumes;        ///< one at a time: an extension writes the scene before the row
   std::mutex study_changes;  ///< one at a time: each touches many jobs
   std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice
 };
@@ -60,6 +59,9 @@ struct RouteRequest {
 
 /// The job that the request names. Throws ApiError(no_such_job).
 [[nodiscard]] Job find_job(const ApiContext& context, const std::string& id);
+/// A message without the place of the data folder, which is nobody's business but the
+/// administrator's.
+[[nodiscard]] std::string without_place(std::string text, const std::filesystem::path& data);
 /// The study that the request names. Throws ApiError(no_such_study).
 [[nodiscard]] StudyRecord find_study(const ApiContext& context, const std::string& id);
 

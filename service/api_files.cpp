@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/json_text.hpp"
+#include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 #include "service/api_routes.hpp"
 #include "service/job_file.hpp"
@@ -86,7 +88,13 @@ Response report_file(const Job& job, const std::filesystem::path& path) {
 
 Json document_in(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return nullptr;
-  return stored_json(read_text(path, JobPaths::kLargestReport));
+  const std::string text = read_text(path, JobPaths::kLargestReport);
+  try {
+    return read_stored_json(text);
+  } catch (const std::runtime_error& error) {
+    throw StorageError(StorageFault::corrupt,
+                       fmt::format("{}: {}", path.filename().string(), error.what()));
+  }
 }
 
 }  // namespace

@@ -73,6 +73,9 @@ Response show_livez(ApiContext& /*context*/, const RouteRequest& request) {
 Response show_readyz(ApiContext& context, const RouteRequest& request) {
   QueryReader(request.http).finish();
   if (context.draining) throw ApiError(ProblemType::draining, "the service is stopping");
+  const std::string trouble = context.store.trouble();
+  if (!trouble.empty())
+    throw ApiError(ProblemType::not_ready, without_place(trouble, context.data));
   (void)context.store.last_event();
   return json_response(200, {{"status", "ready"}});
 }

@@ -40,6 +40,14 @@ bool try_to_cancel(JobStore& store, const std::string& id) {
   }
 }
 
+void delete_if_there(ApiContext& context, const std::string& id) {
+  try {
+    delete_job(context.store, context.data, id);
+  } catch (const JobStoreError& refusal) {
+    if (refusal.fault() != JobStoreError::Fault::not_found) throw;
+  }
+}
+
 }  // namespace
 
 Response list_studies(ApiContext& context, const RouteRequest& request) {
@@ -99,7 +107,7 @@ Response delete_study(ApiContext& context, const RouteRequest& request) {
                                "can be deleted; cancel it first",
                                run, study.id, to_string(job.state)));
   }
-  for (const auto& [run, job] : jobs) delete_job(context.store, context.data, job.id);
+  for (const auto& [run, job] : jobs) delete_if_there(context, job.id);
   context.studies.remove(study.id);
   Response response;
   response.status = 204;

@@ -70,7 +70,8 @@ Response make_job(ApiContext& context, const Request& request, const JobOptions&
   // found at the next start.
   NewFolder folder(context.paths(job.id), request.body,
                    {job.label, job.priority, job.threads, job.created_ms, options.key, hash, {}});
-  const auto submitted = context.store.submit(job, options.key, hash, limits.queued_jobs);
+  const auto submitted = keeping_if_uncertain(
+      folder, [&] { return context.store.submit(job, options.key, hash, limits.queued_jobs); });
   if (!submitted.repeated) folder.keep();
   context.scheduler.poke();
   return accepted(context, submitted.job, submitted.repeated);

@@ -71,7 +71,10 @@ StudyRecord make_study(ApiContext& context, const Request& request, const StudyO
   context.studies.add(study, request.body);
   try {
     make_study_jobs(context, study, plan);
-  } catch (const JobStoreError&) {
+  } catch (const JobStoreError& error) {
+    if (error.fault() != JobStoreError::Fault::uncertain) context.studies.remove(study.id);
+    throw;
+  } catch (...) {
     context.studies.remove(study.id);
     throw;
   }

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/scene/json_text.hpp"
 #include "engine/store/errors.hpp"
 #include "service/worker_exit.hpp"
 
@@ -32,7 +33,7 @@ bool written_since(const std::filesystem::path& path, std::int64_t time_ms) {
 }
 
 FreshOutcome outcome_of(const std::string& text, double end_time) {
-  const Json object = Json::parse(text);
+  const Json object = read_stored_json(text);
   FreshOutcome outcome;
   outcome.state = object.at("state").get<std::string>();
   outcome.exit_code = object.at("exit_code").get<int>();
@@ -165,7 +166,7 @@ std::optional<FreshOutcome> fresh_outcome(const JobPaths& paths, const Job& job)
 std::optional<FreshOutcome> told_outcome(const std::string& text, const Job& job) {
   try {
     return outcome_of(text, job.end_time);
-  } catch (const Json::exception&) {
+  } catch (const std::exception&) {
     return {};
   }
 }

@@ -51,7 +51,7 @@ struct AttemptFacts {
 };
 
 /// Which kind of pause comes before the next attempt.
-enum class NextTry { at_once, after_crash, after_lock };
+enum class NextTry { at_once, after_crash, after_lock, after_refusal };
 
 struct AttemptVerdict {
   JobAction action = JobAction::requeue;

@@ -22,6 +22,11 @@ std::vector<std::string> BackOffs::waiting(double now) const {
   return ids;
 }
 
+int BackOffs::count(const std::string& id, NextTry why) const {
+  const auto found = waits_.find(id);
+  return found != waits_.end() && found->second.why == why ? found->second.count : 0;
+}
+
 std::optional<BackOffs::Wait> BackOffs::find(const std::string& id, double now) const {
   const auto found = waits_.find(id);
   if (found == waits_.end() || now >= found->second.until) return {};

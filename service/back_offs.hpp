@@ -23,6 +23,8 @@ class BackOffs {
   /// counted here.
   void note(const std::string& id, NextTry next, int crashes, double now);
   [[nodiscard]] std::vector<std::string> waiting(double now) const;
+  /// How many attempts in a row ended so.
+  [[nodiscard]] int count(const std::string& id, NextTry why) const;
   /// Nothing when the job need not wait.
   [[nodiscard]] std::optional<Wait> find(const std::string& id, double now) const;
 

@@ -69,7 +69,7 @@ void set_descriptors(const ChildLaunch& launch) {
   require(::dup2(launch.output, STDOUT_FILENO), launch, "set its output");
   require(::dup2(launch.errors, STDERR_FILENO), launch, "set its error output");
   if (launch.sandbox != nullptr) {
-    require(::dup3(launch.program, Sandbox::kProgramDescriptor, O_CLOEXEC), launch,
+    require(::dup3(launch.program, launch.sandbox->program_descriptor(), O_CLOEXEC), launch,
             "give the program its descriptor");
   }
   close_others_at_exec();
@@ -88,7 +88,9 @@ void set_limits(const ChildLaunch& launch) {
   limit(launch, RLIMIT_CORE, 0);
   limit(launch, RLIMIT_AS, launch.address_space);
   limit(launch, RLIMIT_FSIZE, launch.largest_file);
-  limit(launch, RLIMIT_NOFILE, Sandbox::kDescriptorLimit);
+  const int descriptors =
+      launch.sandbox == nullptr ? Sandbox::kDescriptorLimit : launch.sandbox->descriptor_limit();
+  limit(launch, RLIMIT_NOFILE, static_cast<rlim_t>(descriptors));
 }
 
 /// All are wishes: a system that refuses them still runs the worker.
@@ -107,8 +109,8 @@ void execute(const ChildLaunch& launch) {
     ::execve(launch.path, launch.arguments, launch.environment);
     return;
   }
-  ::syscall(SYS_execveat, Sandbox::kProgramDescriptor, "", launch.arguments, launch.environment,
-            AT_EMPTY_PATH);
+  ::syscall(SYS_execveat, launch.sandbox->program_descriptor(), "", launch.arguments,
+            launch.environment, AT_EMPTY_PATH);
 }
 
 }  // namespace

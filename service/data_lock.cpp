@@ -90,6 +90,20 @@ DataLock::DataLock(const fs::path& data) : path_(data / "lock"), descriptor_(ope
   if (!write_content(descriptor_, std::to_string(::getpid()))) fail("cannot write", path_, errno);
 }
 
+std::string DataLock::trouble() const {
+  struct stat held {};
+  struct stat found {};
+  const bool ours = ::fstat(descriptor_.get(), &held) == 0 && ::lstat(path_.c_str(), &found) == 0 &&
+                    held.st_dev == found.st_dev && held.st_ino == found.st_ino;
+  if (!ours) return "the data folder was removed, moved away or replaced; stop the service first";
+  for (const fs::path& folder : {path_.parent_path(), path_.parent_path() / "jobs"}) {
+    if (::access(folder.c_str(), R_OK | W_OK | X_OK) == 0) continue;
+    return fmt::format("{}: {}", folder.string(), std::generic_category().message(errno));
+  }
+  if (::access((path_.parent_path() / "jobs.sqlite").c_str(), R_OK | W_OK) == 0) return {};
+  return fmt::format("jobs.sqlite: {}", std::generic_category().message(errno));
+}
+
 void DataLock::note_clean_stop() { (void)write_content(descriptor_, kStopped); }
 
 }  // namespace sluice

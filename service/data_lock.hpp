@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "engine/store/file_system.hpp"
 
@@ -23,6 +24,9 @@ class DataLock {
 
   /// Unclean, too, when nothing tells of the last stop.
   [[nodiscard]] LastStop last_stop() const { return last_stop_; }
+  /// Why the folder is not the one that was locked any more, or cannot be written in; empty when
+  /// all is well.
+  [[nodiscard]] std::string trouble() const;
   /// The last act of a clean stop. Says nothing when it fails: the next start checks the more.
   void note_clean_stop();
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "engine/scene/json_text.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 #include "engine/store/publish.hpp"
@@ -14,7 +15,7 @@ namespace sluice {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 20;
 constexpr int kMostThreads = 4096;
@@ -85,7 +86,7 @@ JobFile read_job_file(const fs::path& folder) {
   const fs::path path = job_file_path(folder);
   const std::string text = read_text(path, kLargestFile);
   try {
-    return from_json(json::parse(text));
+    return from_json(read_stored_json(text));
   } catch (const std::exception& error) {
     throw StorageError(StorageFault::corrupt, fmt::format("{}: {}", path.string(), error.what()));
   }

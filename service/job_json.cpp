@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <stdexcept>
+
+#include "engine/scene/json_text.hpp"
 
 namespace sluice {
 namespace {
@@ -39,8 +42,11 @@ Json time_json(std::int64_t unix_ms) {
 
 Json stored_json(const std::string& text) {
   if (text.empty()) return nullptr;
-  Json value = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  return value.is_discarded() ? Json(nullptr) : value;
+  try {
+    return read_stored_json(text);
+  } catch (const std::runtime_error&) {
+    return nullptr;
+  }
 }
 
 Json job_summary(const Job& job, const std::string& waiting) {

@@ -155,21 +155,27 @@ void JobStore::remove(const std::string& id) {
   impl_->notify();
 }
 
-bool JobStore::adopt(const Job& job, const std::string& key, const std::string& body_hash) {
+std::vector<std::string> JobStore::adopt_all(const std::vector<Adoption>& adoptions) {
   const Impl::Lock lock = impl_->hold();
   SqliteDb& db = impl_->db();
   SqliteTransaction transaction(db);
-  if (select_job(db, job.id)) return false;
-  if (!key.empty()) {
-    if (const std::optional<KeyRow> row = select_key(db, key)) {
-      throw JobStoreError(Fault::key_reused,
-                          fmt::format("job {} has the same Idempotency-Key", row->job));
+  std::vector<std::string> refusals;
+  for (const auto& [job, key, body_hash] : adoptions) {
+    const std::optional<KeyRow> known = key.empty() ? std::nullopt : select_key(db, key);
+    if (select_job(db, job.id)) {
+      refusals.emplace_back("there is a job of this id");
+    } else if (known) {
+      refusals.push_back(fmt::format("job {} has the same Idempotency-Key", known->job));
+    } else {
+      insert_job(db, job);
+      if (!key.empty()) insert_key(db, key, {job.id, body_hash});
+      insert_event(db, {0, job.id, unix_time_ms(), "adopted", "{}"});
+      refusals.emplace_back();
     }
   }
-  insert_job(db, job);
-  if (!key.empty()) insert_key(db, key, {job.id, body_hash});
-  impl_->commit_with_event(transaction, {0, job.id, unix_time_ms(), "adopted", "{}"});
-  return true;
+  transaction.commit();
+  impl_->notify();
+  return refusals;
 }
 
 }  // namespace sluice

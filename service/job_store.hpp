@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "service/job.hpp"
+#include "service/job_locks.hpp"
 
 namespace sluice {
 
@@ -26,6 +27,8 @@ class JobStoreError : public std::runtime_error {
     disk_full,
     damaged,        ///< the integrity check failed
     newer_version,  ///< the file was written by a newer program
+    uncertain,  ///< whether the change is there cannot be read now: nothing may be undone; the next
+                ///< start brings rows and folders together
     io,
   };
   JobStoreError(Fault fault, const std::string& message)
@@ -56,8 +59,9 @@ struct JobFilter {
 
 /// Job rows, events and idempotency keys in one SQLite file, DATA/jobs.sqlite. One connection,
 /// journal_mode=PERSIST, synchronous=EXTRA, STRICT tables, user_version migrations. What a call
-/// acknowledged survives a power cut. All calls may come from any thread; each write is one BEGIN
-/// IMMEDIATE transaction with its event row.
+/// acknowledged survives a power cut. A call that throws changed nothing, also where the disk
+/// failed at a commit; only Fault::uncertain tells of no more. All calls may come from any thread;
+/// each write is one BEGIN IMMEDIATE transaction with its event row.
 class JobStore {
  public:
   /// Opens or creates; takes the lock of the data folder (in_use) and migrates. After an unclean
@@ -66,6 +70,12 @@ class JobStore {
   ~JobStore();
   JobStore(const JobStore&) = delete;
   JobStore& operator=(const JobStore&) = delete;
+
+  /// Alone with a job, as long as the guard lives: for changes of its row together with its folder.
+  [[nodiscard]] JobLocks::Guard alone_with(const std::string& id) { return locks_.hold(id); }
+  /// Why nothing can be kept in the data folder now, such as that somebody moved it away; empty
+  /// when all is well.
+  [[nodiscard]] std::string trouble() const;
 
   /// A fresh id; ids sort by creation.
   [[nodiscard]] std::string new_id();
@@ -113,7 +123,7 @@ class JobStore {
                        const std::string& progress);
   void record_event(const std::string& id, const std::string& name, const std::string& detail);
   /// Ended jobs only (conflict otherwise), with their events and key. The folder is the caller's to
-  /// remove, before or after.
+  /// remove (retention.hpp).
   void remove(const std::string& id);
 
   /// Events with number > after; of one job when `id` is not empty.
@@ -126,14 +136,20 @@ class JobStore {
   /// Wakes all waiters, for a stop; from then on nobody waits.
   void wake();
 
-  /// Inserts a row made from a job's folder, with its Idempotency-Key if it had one; used by
-  /// --rebuild. False when the id is there: nothing is changed then. Throws key_reused when another
-  /// job has the key.
-  bool adopt(const Job& job, const std::string& key = {}, const std::string& body_hash = {});
+  struct Adoption {
+    Job job;
+    std::string key;  ///< may be empty
+    std::string body_hash;
+  };
+  /// Inserts rows made from jobs' folders, with their Idempotency-Keys, all in one transaction;
+  /// used by --rebuild. Returns for each an empty text, or why it was not taken: its id is there,
+  /// or another job has its key.
+  std::vector<std::string> adopt_all(const std::vector<Adoption>& adoptions);
 
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;
+  JobLocks locks_;
 };
 
 }  // namespace sluice

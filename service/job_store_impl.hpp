@@ -27,7 +27,7 @@ class JobStore::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
 
-  // All that follows but wait_for_event and wake is called with the lock held.
+  // All that follows but trouble, wait_for_event and wake is called with the lock held.
   [[nodiscard]] Lock hold() { return Lock(mutex_); }
   [[nodiscard]] SqliteDb& db() { return db_; }
   [[nodiscard]] LiveProgress& progress() { return progress_; }
@@ -43,6 +43,7 @@ class JobStore::Impl {
   void note_in_folder(const Job& before, const Job& after) const;
   void notify() { changed_.notify_all(); }
 
+  [[nodiscard]] std::string trouble() const { return lock_.trouble(); }
   void wait_for_event(const std::string& id, std::int64_t after, double seconds);
   void wake();
 

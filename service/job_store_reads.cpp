@@ -65,6 +65,8 @@ std::int64_t JobStore::last_event() const {
   return impl_->db().number("SELECT seq FROM sqlite_sequence WHERE name = 'events'");
 }
 
+std::string JobStore::trouble() const { return impl_->trouble(); }
+
 void JobStore::wake() { impl_->wake(); }
 
 }  // namespace sluice

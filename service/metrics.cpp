@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "service/job_json.hpp"
+
 namespace sluice {
 namespace {
 
@@ -44,7 +46,7 @@ void add_running_jobs(std::string& out, const JobStore& store) {
   filter.limit = 1000;
   std::vector<std::pair<std::string, Json>> jobs;
   for (const Job& job : store.list(filter)) {
-    Json progress = Json::parse(job.progress, nullptr, /*allow_exceptions=*/false);
+    Json progress = stored_json(job.progress);
     if (progress.is_object()) jobs.emplace_back(job.id, std::move(progress));
   }
   for (const RunningGauge& gauge : kRunningGauges) {

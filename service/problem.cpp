@@ -77,6 +77,9 @@ constexpr std::array kProblems{
                  "Close one, or poll the job with ?wait=30."},
     ProblemEntry{overloaded, 503, "overloaded", "Too many requests at once",
                  "Try again in a second."},
+    ProblemEntry{not_ready, 503, "not-ready", "The service cannot keep anything",
+                 "Have its administrator bring back the data folder and its permissions, and start "
+                 "the service again."},
     ProblemEntry{disk_full, 507, "disk-full", "The disk is full",
                  "Delete jobs that have ended, or make room on the data folder's disk."},
 };

@@ -44,6 +44,7 @@ enum class ProblemType {
   queue_full,
   too_many_streams,
   overloaded,
+  not_ready,
   disk_full,
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/scene/estimate.hpp"
+#include "engine/scene/json_text.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/new_folder.hpp"
@@ -23,10 +24,8 @@ namespace sluice {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr std::uint64_t kLargestOutcome = std::uint64_t{1} << 24;
-constexpr int kMostDepth = 32;
+constexpr std::size_t kAdoptedAtOnce = 500;
 
 /// When a file was last written, Unix time in ms; 0 where there is none.
 std::int64_t write_time_ms(const fs::path& path) {
@@ -50,19 +49,11 @@ struct Ending {
   double end_time = 0.0;  // model time that it was to reach, s
 };
 
-/// Refuses what nests so deep that writing it again would use up the stack.
-json parse_flat(const std::string& text) {
-  return json::parse(text, [](int depth, json::parse_event_t, const json&) {
-    if (depth > kMostDepth) throw std::runtime_error("nested too deep");
-    return true;
-  });
-}
-
 std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& report) {
   if (!is_there(paths.outcome())) return std::nullopt;
   try {
     Ending ending;
-    const json object = parse_flat(read_text(paths.outcome(), kLargestOutcome));
+    const auto object = read_stored_json(read_text(paths.outcome(), kMaxStoredBytes));
     ending.text = object.dump();
     ending.exit_code = object.at("exit_code").get<int>();
     ending.reason = object.at("reason").get<std::string>();
@@ -169,11 +160,10 @@ std::vector<fs::path> job_folders(const fs::path& data, const RebuildReport& rep
   return folders;
 }
 
-bool adopt_folder(JobStore& store, const fs::path& folder, const RebuildReport& report) {
+JobStore::Adoption read_folder(const fs::path& folder, const RebuildReport& report) {
   const JobPaths paths(folder);
   Job job;
   job.id = folder.filename().string();
-  if (store.find(job.id)) return false;
   job.created_ms = time_of_job_id(job.id).value_or(0);
   const Scene scene = read_scene(paths);
   const std::optional<JobFile> file = read_file(paths, report);
@@ -181,7 +171,22 @@ bool adopt_folder(JobStore& store, const fs::path& folder, const RebuildReport& 
   describe_scene(job, scene, estimate(scene));
   decide_state(job, paths, file, read_ending(paths, report));
   job.updated_ms = std::max(job.created_ms, job.ended_ms);
-  return store.adopt(job, file ? file->key : "", file ? file->body_hash : "");
+  return {std::move(job), file ? file->key : "", file ? file->body_hash : ""};
+}
+
+/// Many in one transaction: each alone waits for the disk several times.
+std::size_t adopt(JobStore& store, const fs::path& data,
+                  const std::vector<JobStore::Adoption>& adoptions, const RebuildReport& report) {
+  const std::vector<std::string> refusals = store.adopt_all(adoptions);
+  std::size_t taken = 0;
+  for (std::size_t k = 0; k < refusals.size(); ++k) {
+    if (refusals[k].empty()) {
+      ++taken;
+    } else {
+      report(data / "jobs" / adoptions[k].job.id, fmt::format("not taken: {}", refusals[k]));
+    }
+  }
+  return taken;
 }
 
 }  // namespace
@@ -191,17 +196,19 @@ std::size_t rebuild_from_folders(JobStore& store, const fs::path& data,
   const RebuildReport tell = report ? report : [](const fs::path&, const std::string&) {};
   remove_unfinished_folders(data / "jobs");
   std::size_t count = 0;
+  std::vector<JobStore::Adoption> adoptions;
   for (const fs::path& folder : job_folders(data, tell)) {
+    if (store.find(folder.filename().string())) continue;
     try {
-      count += adopt_folder(store, folder, tell) ? 1 : 0;
-    } catch (const JobStoreError& error) {
-      if (error.fault() != JobStoreError::Fault::key_reused) throw;
-      tell(folder, fmt::format("not taken: {}", error.what()));
+      adoptions.push_back(read_folder(folder, tell));
     } catch (const std::exception& error) {
       tell(folder, fmt::format("not taken: {}", error.what()));
     }
+    if (adoptions.size() < kAdoptedAtOnce) continue;
+    count += adopt(store, data, adoptions, tell);
+    adoptions.clear();
   }
-  return count;
+  return adoptions.empty() ? count : count + adopt(store, data, adoptions, tell);
 }
 
 std::optional<fs::path> set_aside_database(const fs::path& data) {

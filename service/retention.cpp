@@ -1,11 +1,16 @@
 #include "service/retention.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "engine/store/errors.hpp"
 #include "engine/store/job_folder.hpp"
 #include "service/job_ids.hpp"
+#include "service/job_json.hpp"
+#include "service/service_log.hpp"
 #include "service/study_store.hpp"
 
 namespace sluice {
@@ -21,18 +26,56 @@ void keep_for_study(const JobStore& store, const fs::path& data, const std::stri
   const auto job = store.find(id);
   if (!job || !is_ended(job->state) || !is_study_id(job->label)) return;
   const JobPaths paths(data / "jobs" / id);
-  std::error_code ignored;
-  const bool reported = fs::exists(paths.report(), ignored);
-  keep_run(data, job->label, job->name,
-           {std::string(to_string(job->state)), job->reason,
-            reported ? read_text(paths.report(), JobPaths::kLargestReport) : ""});
+  std::string report;
+  try {
+    report = read_text(paths.report(), JobPaths::kLargestReport);
+  } catch (const StorageError&) {
+    // There is none, or none that says anything.
+  }
+  keep_run(data, job->label, job->name, {std::string(to_string(job->state)), job->reason, report});
 }
 
-/// False when the job was deleted or extended by a request at the same time.
-bool try_to_delete(JobStore& store, const fs::path& data, const std::string& id) {
+/// The row with its folder, or neither. Returns where the folder is now.
+fs::path take_away(JobStore& store, const fs::path& data, const std::string& id,
+                   FileSystem& system) {
+  const auto alone = store.alone_with(id);
+  keep_for_study(store, data, id);
+  const fs::path root = data / "jobs" / id;
+  const fs::path hidden = deleted_folder(data, id);
+  const bool moved = system.rename(root, hidden) == 0;
+  if (!moved && errno != ENOENT) throw system_error("cannot remove the folder", root, errno);
   try {
-    delete_job(store, data, id);
+    // Otherwise a power cut could bring it back, and without its row it would be a new job.
+    if (moved && system.sync_folder(root.parent_path()) != 0) {
+      throw system_error("cannot bring to the disk", root.parent_path(), errno);
+    }
+    store.remove(id);
+  } catch (const JobStoreError& error) {
+    const bool undo = moved && error.fault() != JobStoreError::Fault::uncertain;
+    if (undo) static_cast<void>(system.rename(hidden, root));
+    throw;
+  } catch (...) {
+    if (moved) static_cast<void>(system.rename(hidden, root));
+    throw;
+  }
+  return hidden;
+}
+
+/// False when the job was deleted or extended by a request at the same time, or cannot be deleted
+/// now.
+bool try_to_delete(JobStore& store, const fs::path& data, const Job& job) {
+  try {
+    delete_job(store, data, job.id);
+    log_line({{"event", "job_deleted"},
+              {"job", job.id},
+              {"name", job.name},
+              {"state", to_string(job.state)},
+              {"ended_at", time_json(job.ended_ms)},
+              {"message", "it ended longer ago than --retention-days"}});
     return true;
+  } catch (const StorageError& error) {
+    log_line({{"event", "job_not_deleted"}, {"job", job.id}, {"message", error.what()}});
+    return false;
   } catch (const JobStoreError& refusal) {
     const bool raced = refusal.fault() == JobStoreError::Fault::not_found ||
                        refusal.fault() == JobStoreError::Fault::conflict;
@@ -50,8 +93,10 @@ std::size_t delete_old_jobs_in(JobStore& store, const fs::path& data, JobState s
   while (deleted < most) {
     const std::vector<Job> page = store.list(filter);
     for (const Job& job : page) {
-      const bool old = job.ended_ms > 0 && job.ended_ms < limit_ms;
-      if (old && deleted < most && try_to_delete(store, data, job.id)) ++deleted;
+      // Ids never go back in time, as a clock may that was wrong when the job ended.
+      const std::int64_t ended = std::max(job.ended_ms, time_of_job_id(job.id).value_or(0));
+      const bool old = job.ended_ms > 0 && ended < limit_ms;
+      if (old && deleted < most && try_to_delete(store, data, job)) ++deleted;
     }
     if (page.size() < kEndedPage) break;
     filter.after = page.back().id;
@@ -61,31 +106,24 @@ std::size_t delete_old_jobs_in(JobStore& store, const fs::path& data, JobState s
 
 }  // namespace
 
-void delete_job(JobStore& store, const fs::path& data, const std::string& id) {
-  keep_for_study(store, data, id);
-  const fs::path root = data / "jobs" / id;
-  const fs::path hidden = data / "jobs" / (std::string(kDeletedPrefix) + id);
-  std::error_code missing;
-  fs::rename(root, hidden, missing);
-  try {
-    store.remove(id);
-  } catch (...) {
-    if (!missing) fs::rename(hidden, root, missing);
-    throw;
-  }
-  fs::remove_all(hidden, missing);
+void delete_job(JobStore& store, const fs::path& data, const std::string& id, FileSystem& system) {
+  std::error_code ignored;
+  fs::remove_all(take_away(store, data, id, system), ignored);
 }
 
-void remove_deleted_folders(const fs::path& data) {
-  std::vector<fs::path> found;
+fs::path deleted_folder(const fs::path& data, const std::string& id) {
+  return data / "jobs" / (std::string(kDeletedPrefix) + id);
+}
+
+std::vector<std::string> cut_deletions(const fs::path& data) {
+  std::vector<std::string> ids;
   std::error_code error;
   for (fs::directory_iterator entry(data / "jobs", error), end; !error && entry != end;
        entry.increment(error)) {
-    if (entry->path().filename().string().starts_with(kDeletedPrefix)) {
-      found.push_back(entry->path());
-    }
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with(kDeletedPrefix)) ids.push_back(name.substr(kDeletedPrefix.size()));
   }
-  for (const fs::path& path : found) fs::remove_all(path, error);
+  return ids;
 }
 
 std::size_t delete_old_jobs(JobStore& store, const fs::path& data, std::int64_t limit_ms,

@@ -5,10 +5,12 @@
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <set>
@@ -46,6 +48,15 @@ constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
 #endif
+
+/// The highest number that a descriptor of this process may have, as far as any is of use.
+constexpr int kMostDescriptor = 1000;
+
+int highest_descriptor() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return kMostDescriptor;
+  return static_cast<int>(std::clamp<rlim_t>(limit.rlim_cur, 1, kMostDescriptor + 1)) - 1;
+}
 
 /// Version of Landlock that the kernel speaks; 0 without it.
 int landlock_version() {
@@ -144,9 +155,10 @@ FileDescriptor make_rules(const fs::path& folder, int program) {
 
 }  // namespace
 
-Sandbox::Sandbox(const fs::path& folder, int program) : rules_(make_rules(folder, program)) {
+Sandbox::Sandbox(const fs::path& folder, int program)
+    : program_descriptor_(highest_descriptor()), rules_(make_rules(folder, program)) {
   if (kSanitized || !has_seccomp()) return;
-  SeccompFilter filter = worker_filter(kProgramDescriptor);
+  SeccompFilter filter = worker_filter(program_descriptor_);
   filter_ = std::move(filter.program);
   own_id_ = std::move(filter.own_id);
 }
@@ -166,7 +178,7 @@ int Sandbox::enter() {
 
 std::string Sandbox::missing() {
   const bool landlock = landlock_version() > 0;
-  const bool seccomp = has_seccomp() && !worker_filter(kProgramDescriptor).program.empty();
+  const bool seccomp = has_seccomp() && !worker_filter(kMostDescriptor).program.empty();
   if (landlock && seccomp) return {};
   if (landlock) return "seccomp";
   return seccomp ? "Landlock" : "Landlock and seccomp";

@@ -22,15 +22,22 @@ enum class Confinement { full, none };
 /// Made before a fork, entered by the child just before its exec.
 class Sandbox {
  public:
-  /// The number that the program's own descriptor has in the child. The one exec that the filter
-  /// lets pass names this number. It lies above the limit of descriptors that a worker gets, and
-  /// the exec closes it, so the worker cannot have such a descriptor again.
-  static constexpr int kProgramDescriptor = 1000;
-  static constexpr unsigned kDescriptorLimit = 256;
+  /// Most descriptors that a worker gets, where the service's own limit lets it have so many.
+  static constexpr int kDescriptorLimit = 256;
 
   /// `program`: a descriptor of the program to be started. Throws std::system_error when the folder
   /// cannot be opened.
   Sandbox(const std::filesystem::path& folder, int program);
+
+  /// The number that the program's own descriptor has in the child. The one exec that the filter
+  /// lets pass names this number. It lies at or above the limit of descriptors that a worker gets,
+  /// and the exec closes it, so the worker cannot have such a descriptor again.
+  [[nodiscard]] int program_descriptor() const { return program_descriptor_; }
+  [[nodiscard]] int descriptor_limit() const {
+    return program_descriptor_ < kDescriptorLimit ? program_descriptor_ : kDescriptorLimit;
+  }
+  /// The descriptor that `enter` needs; below 0 for none.
+  [[nodiscard]] int rules_descriptor() const { return rules_.get(); }
 
   /// Irrevocable. Async-signal-safe. Zero, or the errno of what failed.
   [[nodiscard]] int enter();
@@ -39,6 +46,7 @@ class Sandbox {
   [[nodiscard]] static std::string missing();
 
  private:
+  int program_descriptor_;
   FileDescriptor rules_;             ///< of Landlock; below 0 without it
   std::vector<sock_filter> filter_;  ///< of seccomp; empty without it
   std::vector<std::size_t> own_id_;  ///< instructions that compare with the worker's process id

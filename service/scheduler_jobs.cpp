@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "engine/store/errors.hpp"
 #include "service/retention.hpp"
 #include "service/scheduler_loop.hpp"
 #include "service/service_log.hpp"
@@ -20,11 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kNextDeletion = 1.0;     // s between two lots of old jobs
 constexpr double kLongestDeletion = 600;  // s between looks for old jobs
 constexpr std::size_t kMostDeletions = 20;
-
-std::int64_t unix_ms() {
-  using namespace std::chrono;
-  return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
-}
+/// Starts that the system may refuse a job in a row: two minutes of back-off.
+constexpr int kMostRefusals = 8;
 
 std::string detail_text(const Json& detail) {
   return detail.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -120,7 +117,22 @@ void SchedulerLoop::delete_old_jobs_when_due() {
   const double now = senses_.clock();
   if (!(limits_.retention_days > 0.0) || now < next_deletion_) return;
   const double kept = limits_.retention_days * 86400.0;
-  const auto limit = unix_ms() - static_cast<std::int64_t>(std::min(kept, 1e9) * 1000.0);
+  const std::int64_t time = retention_.look(senses_.wall_ms(), now);
+  if (const auto leap = retention_.new_leap()) {
+    log_line(
+        {{"event", "clock_leapt"},
+         {"message",
+          fmt::format("the clock is {:.1f} days ahead of the time that is known: if it says the "
+                      "same in {:.1f} hours it is believed; until then no job is deleted for "
+                      "that. Stop the service or set the clock if it is wrong",
+                      *leap / 86400.0, retention_.grace() / 3600.0)}});
+  }
+  const auto limit = time - static_cast<std::int64_t>(std::min(kept, 1e9) * 1000.0);
+  try {
+    write_retention_time(data_, time);
+  } catch (const StorageError& error) {
+    log_scheduler(fmt::format("the time of this look is not kept: {}", error.what()));
+  }
   const bool more = delete_old_jobs(store_, data_, limit, kMostDeletions) == kMostDeletions;
   next_deletion_ = now + (more ? kNextDeletion : std::clamp(kept, kNextDeletion, kLongestDeletion));
 }
@@ -140,7 +152,9 @@ void SchedulerLoop::start_jobs() {
     if (head_waits_for_room(free, except)) return;
     const std::optional<Job> job = store_.claim(free, except);
     if (!job) return;
-    orphaned_on_error(*job, [&] { start(*job); });
+    bool started = false;
+    orphaned_on_error(*job, [&] { started = start(*job); });
+    if (!started) return;
   }
 }
 
@@ -153,24 +167,33 @@ bool SchedulerLoop::head_waits_for_room(int free, const std::vector<std::string>
   return false;
 }
 
-void SchedulerLoop::start(const Job& job) {
+bool SchedulerLoop::start(const Job& job) {
   AttemptVerdict verdict;
   if (!JobFolder::holds_job(paths(job).root())) {
     verdict.action = JobAction::fail;
     verdict.change.reason = "its folder, or the scene in it, is gone";
-    return conclusions_.conclude(job, std::move(verdict), senses_.clock());
+    conclusions_.conclude(job, std::move(verdict), senses_.clock());
+    return true;
   }
   try {
     const Attempt& attempt = attempts_.emplace_back(
         job, worker_command(worker_, paths(job).root(), job, limits_), senses_.clock());
     const Json detail{{"pid", attempt.process().pid()}, {"threads", job.threads}};
     record(attempt, {{"worker_started", detail_text(detail), {}, {}}});
+    return true;
   } catch (const WorkerStartError& error) {
-    verdict.action = JobAction::requeue;
-    verdict.change.reason = error.what();
-    verdict.change.event_detail = detail_text({{"reason", error.what()}});
-    verdict.next = NextTry::after_lock;
+    const int refusals = conclusions_.back_offs().count(job.id, NextTry::after_refusal) + 1;
+    std::string reason = error.what();
+    if (refusals >= kMostRefusals) {
+      verdict.action = JobAction::pause;
+      reason += fmt::format("; tried {} times: mend this, then resume the job", refusals);
+    }
+    log_scheduler(fmt::format("job {}: {}", job.id, reason));
+    verdict.change.event_detail = detail_text({{"reason", reason}});
+    verdict.change.reason = std::move(reason);
+    verdict.next = NextTry::after_refusal;
     conclusions_.conclude(job, std::move(verdict), senses_.clock());
+    return false;
   }
 }
 

@@ -9,17 +9,25 @@
 
 #include "service/admission.hpp"
 #include "service/attempt_limits.hpp"
-#include "service/retention.hpp"
 #include "service/service_log.hpp"
 
 namespace sluice {
 namespace {
 
+constexpr double kDay = 86400.0;     // s
 constexpr double kTick = 1.0;        // s
 constexpr double kOrphanTick = 0.1;  // s: an orphan was told to stop and soon will
 /// s that a drain waits for the store to take the last transitions. They are not lost without:
 /// the next start makes them anew from the folders.
 constexpr double kStorePatience = 5.0;
+
+/// The newest time that is known from before this service, Unix time in ms; 0: none.
+std::int64_t known_time(const JobStore& store, const std::filesystem::path& data) {
+  const std::int64_t kept = read_retention_time(data);
+  if (kept > 0) return kept;
+  const auto newest = store.events("", store.last_event() - 1, 1);
+  return newest.empty() ? 0 : newest.front().time_ms;
+}
 
 }  // namespace
 
@@ -35,7 +43,8 @@ SchedulerLoop::SchedulerLoop(JobStore& store, std::filesystem::path data, Servic
       board_(board),
       cores_(thread_limit(limits)),
       orphans_(data_, limits.stop_seconds),
-      conclusions_(store) {
+      conclusions_(store),
+      retention_(limits.retention_days * kDay, known_time(store, data_)) {
   publish_status();
 }
 
@@ -47,7 +56,6 @@ void SchedulerLoop::run() {
     log_scheduler(
         fmt::format("this system has no {}: workers are confined by limits alone", missing));
   }
-  remove_deleted_folders(data_);
   bool recovered = false;
   while (!drained()) {
     try {

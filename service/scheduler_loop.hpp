@@ -11,6 +11,7 @@
 #include "service/orphan_watch.hpp"
 #include "service/patience.hpp"
 #include "service/queue_view.hpp"
+#include "service/retention_clock.hpp"
 #include "service/scheduler.hpp"
 #include "service/scheduler_board.hpp"
 #include "service/scheduler_senses.hpp"
@@ -50,7 +51,8 @@ class SchedulerLoop {
   void conclude_orphan(const Job& job);
   void watch_disk();
   void delete_old_jobs_when_due();
-  void start(const Job& job);
+  /// False when the system refused, as it would refuse the next one too.
+  bool start(const Job& job);
   [[nodiscard]] bool head_waits_for_room(int free, const std::vector<std::string>& except);
   [[nodiscard]] int free_threads() const;
   [[nodiscard]] JobPaths paths(const Job& job) const;
@@ -68,6 +70,7 @@ class SchedulerLoop {
   OrphanWatch orphans_;
   Conclusions conclusions_;
   Patience patience_;
+  RetentionClock retention_;
   bool disk_low_ = false;
   bool look_ = true;  ///< something may have changed that concerns the queue or stops
   double next_tick_ = 0.0;

@@ -7,6 +7,7 @@
 
 #include "service/core_use.hpp"
 #include "service/disk_guard.hpp"
+#include "service/job_ids.hpp"
 
 namespace sluice {
 
@@ -18,6 +19,8 @@ struct SchedulerSenses {
     using Seconds = std::chrono::duration<double>;
     return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
   };
+  /// The wall clock, Unix time in ms, which may be wrong and may leap.
+  std::function<std::int64_t()> wall_ms = unix_time_ms;
   /// Bytes that may still be written on the disk of a folder.
   std::function<std::uint64_t(const std::filesystem::path&)> free_disk = sluice::free_disk;
   /// What a worker has had of the cores, and whether it wants more.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <cerrno>
 #include <utility>
 
@@ -108,6 +109,21 @@ std::string SqliteDb::text(std::string_view sql) {
 
 std::int64_t SqliteDb::changes() const { return ::sqlite3_changes64(handle_); }
 std::int64_t SqliteDb::last_row() const { return ::sqlite3_last_insert_rowid(handle_); }
+std::optional<std::uint32_t> SqliteDb::change_count() {
+  constexpr int kOffset = 24;  // of the file format
+  sqlite3_file* file = nullptr;
+  if (::sqlite3_file_control(handle_, "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK) {
+    return std::nullopt;
+  }
+  if (file == nullptr || file->pMethods == nullptr) return std::nullopt;
+  std::array<unsigned char, 4> bytes{};
+  const int result = file->pMethods->xRead(file, bytes.data(), bytes.size(), kOffset);
+  if (result != SQLITE_OK && result != SQLITE_IOERR_SHORT_READ) return std::nullopt;
+  std::uint32_t count = 0;
+  for (const unsigned char byte : bytes) count = count << 8U | byte;
+  return count;
+}
+
 bool SqliteDb::in_transaction() const { return ::sqlite3_get_autocommit(handle_) == 0; }
 
 SqliteStatement::SqliteStatement(SqliteDb& db, std::string_view sql) : db_(db) {
@@ -160,7 +176,10 @@ std::int64_t SqliteStatement::integer(int column) const {
 
 double SqliteStatement::real(int column) const { return ::sqlite3_column_double(handle_, column); }
 
-SqliteTransaction::SqliteTransaction(SqliteDb& db) : db_(db) { db_.execute("BEGIN IMMEDIATE"); }
+SqliteTransaction::SqliteTransaction(SqliteDb& db) : db_(db) {
+  db_.execute("BEGIN IMMEDIATE");
+  before_ = db_.change_count();
+}
 
 SqliteTransaction::~SqliteTransaction() {
   if (!db_.in_transaction()) return;
@@ -171,6 +190,39 @@ SqliteTransaction::~SqliteTransaction() {
   }
 }
 
-void SqliteTransaction::commit() { db_.execute("COMMIT"); }
+void SqliteTransaction::commit() {
+  try {
+    return db_.execute("COMMIT");
+  } catch (const JobStoreError& error) {
+    if (db_.in_transaction() || !took_effect(error)) throw;
+  }
+  make_it_last();
+}
+
+bool SqliteTransaction::took_effect(const JobStoreError& error) {
+  constexpr int kMostReads = 3;
+  for (int n = 0; before_ && n < kMostReads; ++n) {
+    try {
+      // Whatever must be rolled back is, before anything can be read.
+      static_cast<void>(db_.number("SELECT count(*) FROM sqlite_schema"));
+    } catch (const JobStoreError&) {
+      continue;
+    }
+    if (const auto after = db_.change_count()) return *after != *before_;
+  }
+  throw JobStoreError(Fault::uncertain,
+                      fmt::format("{}; whether the change was made cannot be read now: look again "
+                                  "when the disk is well",
+                                  error.what()));
+}
+
+/// A commit more brings what the last one left in the system's memory to the disk. Should that fail
+/// too, the change is made all the same; only a power cut could take it back.
+void SqliteTransaction::make_it_last() {
+  try {
+    db_.execute(fmt::format("PRAGMA user_version = {}", db_.number("PRAGMA user_version")));
+  } catch (const JobStoreError&) {
+  }
+}
 
 }  // namespace sluice

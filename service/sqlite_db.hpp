@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,8 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace sluice {
+
+class JobStoreError;
 
 /// A SQLite file. For one thread at a time. Everything here throws JobStoreError: disk_full,
 /// damaged, io, with the path in the message.
@@ -34,6 +37,9 @@ class SqliteDb {
   /// Number of the last row inserted.
   [[nodiscard]] std::int64_t last_row() const;
   [[nodiscard]] bool in_transaction() const;
+  /// A number in the file's head that every committed transaction makes greater; nothing where it
+  /// cannot be read.
+  [[nodiscard]] std::optional<std::uint32_t> change_count();
   /// Whether any call so far met damage.
   [[nodiscard]] bool found_damage() const { return found_damage_; }
 
@@ -90,11 +96,18 @@ class SqliteTransaction {
   SqliteTransaction(const SqliteTransaction&) = delete;
   SqliteTransaction& operator=(const SqliteTransaction&) = delete;
   ~SqliteTransaction();
-  /// When it returns, all that was written survives a power cut.
+  /// When it returns, all that was written survives a power cut. When it throws, nothing was
+  /// written: where the disk fails after the point from which SQLite counts a transaction as
+  /// committed, COMMIT reports an error and is done all the same, so the file is asked. Where that
+  /// cannot be read either, it throws `uncertain`.
   void commit();
 
  private:
+  [[nodiscard]] bool took_effect(const JobStoreError& error);
+  void make_it_last();
+
   SqliteDb& db_;
+  std::optional<std::uint32_t> before_;
 };
 
 }  // namespace sluice

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/scene/initial.hpp"
+#include "engine/store/errors.hpp"
 #include "service/admission.hpp"
 #include "service/job_ids.hpp"
 #include "service/problem.hpp"
@@ -108,9 +109,16 @@ void make_study_jobs(ApiContext& context, const StudyRecord& study, const StudyP
     folders.emplace_back(context.paths(job.id), run.scene_text,
                          JobFile{job.label, job.priority, job.threads, job.created_ms, "", "", {}});
   }
-  context.store.submit_all(jobs, context.scheduler.limits().queued_jobs);
-  for (NewFolder& folder : folders) folder.keep();
-  context.studies.set_made(study.id);
+  keeping_if_uncertain(folders, [&] {
+    return context.store.submit_all(jobs, context.scheduler.limits().queued_jobs);
+  });
+  keep(folders);
+  try {
+    context.studies.set_made(study.id);
+  } catch (const StorageError& error) {
+    // The jobs are there; the next start notes it.
+    log_line({{"event", "study_unfinished"}, {"study", study.id}, {"message", error.what()}});
+  }
   context.scheduler.poke();
 }
 

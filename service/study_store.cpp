@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/scene/json_text.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/new_folder.hpp"
@@ -16,9 +17,7 @@ namespace sluice {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 21;
+using json = nlohmann::ordered_json;
 
 fs::path studies_of(const fs::path& data) { return data / "studies"; }
 fs::path submission_in(const fs::path& folder) { return folder / "submission.json"; }
@@ -65,11 +64,11 @@ StudyRecord from_json(const std::string& id, const json& object) {
 std::optional<StudyRecord> read_record(const fs::path& folder) {
   try {
     return from_json(folder.filename().string(),
-                     json::parse(read_text(submission_in(folder), kLargestFile)));
-  } catch (const json::exception&) {
-    return std::nullopt;
+                     read_stored_json(read_text(submission_in(folder), kMaxStoredBytes)));
   } catch (const StorageError& error) {
     if (error.fault() == StorageFault::io) throw;
+    return std::nullopt;
+  } catch (const std::exception&) {
     return std::nullopt;
   }
 }
@@ -90,6 +89,8 @@ void StudyStore::read_all() {
     if (entry.is_symlink() || !entry.is_directory() || !is_study_id(path.filename().string())) {
       continue;
     }
+    remove_leftovers(path);
+    remove_leftovers(kept_in(path, "").parent_path());
     if (!fs::exists(submission_in(path))) {
       broken.push_back(path);
     } else if (auto record = read_record(path)) {
@@ -118,9 +119,11 @@ void StudyStore::set_made(const std::string& id) {
   auto record = find(id);
   if (!record) return;
   record->stage = StudyRecord::Stage::made;
+  {
+    const std::scoped_lock lock(mutex_);
+    records_[id] = *record;
+  }
   write(*record);
-  const std::scoped_lock lock(mutex_);
-  records_[id] = *record;
 }
 
 void StudyStore::remove(const std::string& id) {
@@ -176,10 +179,10 @@ std::optional<KeptRun> StudyStore::kept_run(const std::string& id, const std::st
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::nullopt;
   try {
-    const json object = json::parse(read_text(path, kLargestFile));
+    const json object = read_stored_json(read_text(path, kMaxStoredBytes));
     return KeptRun{object.at("state").get<std::string>(), object.at("reason").get<std::string>(),
                    object.at("report").get<std::string>()};
-  } catch (const json::exception&) {
+  } catch (const std::exception&) {
     return std::nullopt;
   }
 }

@@ -5,9 +5,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/store/job_folder.hpp"
 #include "service/job_file.hpp"
+#include "service/job_store.hpp"
 #include "service/message.hpp"
 
 namespace sluice {
@@ -39,5 +41,22 @@ class NewFolder {
   std::filesystem::path root_;
   bool kept_ = false;
 };
+
+inline void keep(NewFolder& folder) { folder.keep(); }
+inline void keep(std::vector<NewFolder>& folders) {
+  for (NewFolder& folder : folders) folder.keep();
+}
+
+/// Makes the rows of a folder, or of several. Where nobody can tell whether they were made, the
+/// folders stay: the next start gives them rows.
+template <class Folders, class Action>
+auto keeping_if_uncertain(Folders& folders, const Action& make_rows) {
+  try {
+    return make_rows();
+  } catch (const JobStoreError& error) {
+    if (error.fault() == JobStoreError::Fault::uncertain) keep(folders);
+    throw;
+  }
+}
 
 }  // namespace sluice

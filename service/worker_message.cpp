@@ -2,31 +2,15 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "service/job_json.hpp"
 
 namespace sluice {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kDeepest = 8;
 constexpr std::size_t kLongestName = 40;
-
-/// A deep tree parses, but copying it overflows the stack.
-bool check_depth(int depth, Json::parse_event_t, Json&) {
-  if (depth > kDeepest) throw std::length_error("nested too deep");
-  return true;
-}
-
-std::optional<Json> parse_object(std::string_view line) {
-  try {
-    Json object = Json::parse(line, check_depth, false);
-    if (!object.is_object()) return {};
-    return object;
-  } catch (const std::length_error&) {
-    return {};
-  }
-}
 
 std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
@@ -36,18 +20,17 @@ std::string text_of(const Json& object, const char* key) {
 }  // namespace
 
 std::optional<WorkerMessage> parse_worker_line(std::string_view line) {
-  std::optional<Json> object = parse_object(line);
-  if (!object) return {};
+  Json object = stored_json(std::string(line));
+  if (!object.is_object()) return {};
   WorkerMessage message;
-  message.event = text_of(*object, "event");
+  message.event = text_of(object, "event");
   if (message.event.empty() || message.event.size() > kLongestName) return {};
-  const auto step = object->find("step");
-  if (step != object->end() && step->is_number_unsigned())
-    message.step = step->get<std::uint64_t>();
-  message.text = text_of(*object, "message");
-  if (message.text.empty()) message.text = text_of(*object, "reason");
-  object->erase("event");
-  message.detail = object->dump();
+  const auto step = object.find("step");
+  if (step != object.end() && step->is_number_unsigned()) message.step = step->get<std::uint64_t>();
+  message.text = text_of(object, "message");
+  if (message.text.empty()) message.text = text_of(object, "reason");
+  object.erase("event");
+  message.detail = object.dump();
   return message;
 }
 

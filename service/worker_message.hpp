@@ -19,7 +19,8 @@ struct WorkerMessage {
   std::string text;                   ///< "message" or "reason", where the line has one
 };
 
-/// Nothing when the line is no JSON object with an event's name, or is nested more than eight deep.
+/// Nothing when the line is no JSON object with an event's name, or is beyond the bounds of
+/// read_stored_json().
 [[nodiscard]] std::optional<WorkerMessage> parse_worker_line(std::string_view line);
 
 /// At most `bytes` of the text and only what a person can read: other bytes than printable ASCII

@@ -138,6 +138,14 @@ std::optional<Sandbox> make_sandbox(const WorkerCommand& command, int program) {
   }
 }
 
+/// The child puts the program at a number where nothing may stand that it needs after that.
+void require_free_number(const Sandbox& sandbox, const FileDescriptor& report) {
+  const int number = sandbox.program_descriptor();
+  if (report.get() == number || sandbox.rules_descriptor() == number) {
+    fail("find a free descriptor: raise the limit of open files (ulimit -n)", EMFILE);
+  }
+}
+
 }  // namespace
 
 WorkerProcess::WorkerProcess(const WorkerCommand& command) {
@@ -150,6 +158,7 @@ WorkerProcess::WorkerProcess(const WorkerCommand& command) {
   never_wait_for(output.reading);
   never_wait_for(errors.reading);
   std::optional<Sandbox> sandbox = make_sandbox(command, program.get());
+  if (sandbox) require_free_number(*sandbox, report.writing);
   const Strings arguments(argument_texts(command));
   const Strings environment(environment_texts(command));
 

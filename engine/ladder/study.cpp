@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 #include <stdexcept>
 
@@ -74,8 +75,11 @@ void describe(Archive& a, Study& study) {
 
 namespace {
 
+/// A value as names and tables show it: short, whatever it is.
 std::string word_of(const json& value) {
-  return value.is_string() ? value.get<std::string>() : excerpt(value);
+  constexpr std::size_t kLongest = 100;
+  const bool whole = value.is_string() && value.get_ref<const std::string&>().size() <= kLongest;
+  return whole ? value.get<std::string>() : excerpt(value);
 }
 
 std::string last_token(const std::string& pointer) {
@@ -100,19 +104,55 @@ std::string plain_name(const std::string& text) {
   return name.substr(0, kLongest);
 }
 
-/// Puts a value at a pointer, or takes the key away for null. Throws json::exception and
-/// std::invalid_argument where the pointer leads nowhere.
-void apply(json& scene, const std::string& key, const json& value) {
-  const json::json_pointer place(key);
-  if (place.empty()) throw std::invalid_argument("the whole scene cannot be replaced");
-  if (!value.is_null()) {
-    scene[place] = value;
-    return;
+std::vector<std::string> tokens_of(const std::string& pointer) {
+  std::vector<std::string> tokens;
+  for (json::json_pointer rest(pointer); !rest.empty(); rest.pop_back()) {
+    tokens.push_back(rest.back());
   }
-  if (!scene.contains(place)) return;
-  json& parent = scene[place.parent_pointer()];
-  if (!parent.is_object()) throw std::invalid_argument("only a key of an object can be left out");
-  parent.erase(place.back());
+  std::ranges::reverse(tokens);
+  return tokens;
+}
+
+/// The element that a token names. An index never makes an array longer: a short text could ask for
+/// more elements than any machine holds.
+json& element(json& array, const std::string& token) {
+  std::size_t index = 0;
+  const char* const end = token.data() + token.size();
+  const auto [stop, error] = std::from_chars(token.data(), end, index);
+  const bool plain = token == "0" || !token.starts_with('0');
+  if (error != std::errc() || stop != end || !plain || index >= array.size()) {
+    throw std::invalid_argument(
+        fmt::format("{} is no index of an array that has {} elements, counted from 0",
+                    excerpt(token), array.size()));
+  }
+  return array[index];
+}
+
+/// Puts a value at a pointer, or takes the key away for null. Objects on the way are made; nothing
+/// else is. Throws json::exception and std::invalid_argument where the pointer leads nowhere.
+void apply(json& scene, const std::string& key, const json& value) {
+  const std::vector<std::string> tokens = tokens_of(key);
+  if (tokens.empty()) throw std::invalid_argument("the whole scene cannot be replaced");
+  json* place = &scene;
+  for (const std::string& token : tokens) {
+    const bool last = &token == &tokens.back();
+    if (place->is_null()) *place = json::object();
+    if (place->is_array()) {
+      if (last && value.is_null()) {
+        throw std::invalid_argument("only a key of an object can be left out");
+      }
+      place = &element(*place, token);
+    } else if (!place->is_object()) {
+      throw std::invalid_argument(
+          fmt::format("{} stands in {}, which has no keys", excerpt(token), name_value(*place)));
+    } else if (value.is_null() && (last || !place->contains(token))) {
+      place->erase(token);
+      return;
+    } else {
+      place = &(*place)[token];
+    }
+  }
+  *place = value;
 }
 
 /// Makes the runs of a study whose own keys are in order.
@@ -148,6 +188,7 @@ class Planner {
 
   /// The grid, axis by axis.
   void walk(const json& scene, const StudyRun& run, std::size_t axis) {
+    if (full_) return;
     if (axis == plan_.study.vary.size()) return repeat(scene, run);
     const StudyAxis& varied = plan_.study.vary[axis];
     for (std::size_t k = 0; k < varied.values.size(); ++k) {
@@ -163,7 +204,7 @@ class Planner {
 
   void repeat(const json& scene, const StudyRun& run) {
     if (!plan_.study.repeats) return finish(scene, run, "");
-    for (int k = 1; k <= plan_.study.repeats->count; ++k) {
+    for (int k = 1; k <= plan_.study.repeats->count && !full_; ++k) {
       json displaced = scene;
       displaced["jitter"] = {{"amplitude", plan_.study.repeats->jitter}, {"seed", k}};
       finish(displaced, run, fmt::format("-r{}", k));
@@ -179,13 +220,24 @@ class Planner {
                                     run.name));
     }
     scene["name"] = run.name;
-    run.scene_text = scene.dump(2) + "\n";
+    // On one line first: how long it is on many, only a valid scene bounds.
+    run.scene_text = scene.dump();
+    bytes_ += run.scene_text.size();
+    if (bytes_ > kMaxStudyBytes) {
+      problems_.add("", fmt::format("its scenes have more than {} MiB together; study less at once",
+                                    kMaxStudyBytes >> 20));
+      full_ = true;
+      return;
+    }
     ParseResult parsed = parse_scene(run.scene_text, StabilityCheck::skip);
     for (const Problem& problem : parsed.problems) {
       problems_.add("", fmt::format("run {}: {}: {}", run.name, problem.pointer, problem.message));
     }
+    full_ = full_ || parsed.problems.size() >= kMaxProblems;
     if (!parsed.scene) return;
     run.scene = *std::move(parsed.scene);
+    std::string readable = scene.dump(2) + "\n";
+    if (readable.size() <= kMaxSceneBytes) run.scene_text = std::move(readable);
     plan_.runs.push_back(std::move(run));
   }
 
@@ -193,6 +245,8 @@ class Planner {
   Problems& problems_;
   std::vector<json> bases_;
   std::set<std::string> names_;
+  std::size_t bytes_ = 0;  ///< of all scenes so far
+  bool full_ = false;      ///< what more would be found, nobody is told
 };
 
 void check_values(const Study& study, std::size_t most, Problems& problems) {

@@ -13,6 +13,7 @@
 namespace sluice {
 
 inline constexpr std::size_t kMaxStudyRuns = 1000;
+inline constexpr std::size_t kMaxStudyBytes = std::size_t{16} << 20;  ///< of its scenes together
 
 /// A named way to change the base scene: values by JSON pointer, null leaves the key out.
 struct StudyCase {
@@ -68,7 +69,8 @@ using SceneLoader = std::string (*)(const std::string& name, const void* context
 /// Reads a study and makes every run's scene. Nothing is thrown for bad text. Scenes that are
 /// predicted to be unstable are accepted: finding out is what a study is for. `load` may be null:
 /// then the scene must stand in the study itself. A study of more than `most` runs is refused
-/// before any is made.
+/// before any is made, one of more than kMaxStudyBytes as soon as that shows: what it takes of
+/// memory and time is bounded by these two.
 [[nodiscard]] StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context,
                                    std::size_t most = kMaxStudyRuns);
 

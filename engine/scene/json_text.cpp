@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -13,9 +14,10 @@ using nlohmann::json;
 
 /// Builds the tree from the parser's events and stops it where a limit is broken. The tree is never
 /// deeper than kMaxSceneDepth, so nothing that walks or copies it can run out of stack.
-class Builder : public nlohmann::json_sax<json> {
+template <class Json>
+class Builder : public nlohmann::json_sax<Json> {
  public:
-  Builder(json& root, Problems& problems) : root_(root), problems_(problems) {}
+  Builder(Json& root, Problems& problems) : root_(root), problems_(problems) {}
 
   bool null() override { return value(nullptr); }
   bool boolean(bool v) override { return value(v); }
@@ -23,14 +25,21 @@ class Builder : public nlohmann::json_sax<json> {
   bool number_unsigned(std::uint64_t v) override { return value(v); }
   bool number_float(double v, const std::string&) override { return value(v); }
   bool string(std::string& v) override { return value(std::move(v)); }
-  bool binary(json::binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return open(json::object()); }
-  bool start_array(std::size_t) override { return open(json::array()); }
+  bool binary(typename Json::binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
 
   bool key(std::string& v) override {
     Level& level = levels_.back();
+    if (v.size() > kMaxKeyBytes) {
+      return refuse(
+          fmt::format("a key of {} bytes; no key has more than {}", v.size(), kMaxKeyBytes));
+    }
+    if (level.container->size() == kMaxKeys) {
+      return refuse(fmt::format("an object of more than {} keys", kMaxKeys));
+    }
     level.key = std::move(v);
     if (level.container->contains(level.key)) {
       problems_.add(pointer(), "this key stands twice in its object; remove one");
@@ -39,19 +48,19 @@ class Builder : public nlohmann::json_sax<json> {
   }
 
   bool parse_error(std::size_t position, const std::string&,
-                   const json::exception& error) override {
+                   const nlohmann::detail::exception& error) override {
     problems_.add(pointer(), describe(position, error));
     return false;
   }
 
  private:
   struct Level {
-    json* container;
+    Json* container;
     std::string key;
   };
 
   // The message of the library without its tag, and without bytes that need not be UTF-8.
-  static std::string describe(std::size_t position, const json::exception& error) {
+  static std::string describe(std::size_t position, const nlohmann::detail::exception& error) {
     std::string what = error.what();
     if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
     for (char& c : what) {
@@ -79,30 +88,29 @@ class Builder : public nlohmann::json_sax<json> {
     return result;
   }
 
-  json* put(json v) {
+  Json* put(Json v) {
     if (levels_.empty()) {
       root_ = std::move(v);
       return &root_;
     }
-    json& container = *levels_.back().container;
+    Json& container = *levels_.back().container;
     if (container.is_array()) {
       container.push_back(std::move(v));
       return &container.back();
     }
-    json& slot = container[levels_.back().key];
+    Json& slot = container[levels_.back().key];
     slot = std::move(v);
     return &slot;
   }
 
-  bool value(json v) {
+  bool value(Json v) {
     put(std::move(v));
     return true;
   }
 
-  bool open(json v) {
+  bool open(Json v) {
     if (levels_.size() == kMaxSceneDepth) {
-      problems_.add(pointer(), fmt::format("nested deeper than {} levels", kMaxSceneDepth));
-      return false;
+      return refuse(fmt::format("nested deeper than {} levels", kMaxSceneDepth));
     }
     levels_.push_back({put(std::move(v)), {}});
     return true;
@@ -113,10 +121,32 @@ class Builder : public nlohmann::json_sax<json> {
     return true;
   }
 
-  json& root_;
+  bool refuse(std::string message) {
+    problems_.add(pointer(), std::move(message));
+    return false;
+  }
+
+  Json& root_;
   Problems& problems_;
   std::vector<Level> levels_;
 };
+
+template <class Json>
+std::optional<Json> read_bounded(std::string_view text, std::size_t most, Problems& problems) {
+  if (text.size() > most) {
+    problems.add("", fmt::format("the text has {} bytes; at most {} are read", text.size(), most));
+    return std::nullopt;
+  }
+  // The parser would take it for the end of the text.
+  if (const auto place = text.find('\0'); place != std::string_view::npos) {
+    problems.add("", fmt::format("not JSON at byte {}: a byte of value zero", place + 1));
+    return std::nullopt;
+  }
+  Json root;
+  Builder<Json> builder(root, problems);
+  if (!Json::sax_parse(text.begin(), text.end(), &builder)) return std::nullopt;
+  return root;
+}
 
 void write(const json& value, std::string& out) {
   if (value.is_object() || value.is_array()) {
@@ -139,15 +169,17 @@ void write(const json& value, std::string& out) {
 }  // namespace
 
 std::optional<json> read_json(std::string_view text, Problems& problems) {
-  if (text.size() > kMaxSceneBytes) {
-    problems.add(
-        "", fmt::format("the text has {} bytes; at most {} are read", text.size(), kMaxSceneBytes));
-    return std::nullopt;
-  }
-  json root;
-  Builder builder(root, problems);
-  if (!json::sax_parse(text.begin(), text.end(), &builder)) return std::nullopt;
-  return root;
+  return read_bounded<json>(text, kMaxSceneBytes, problems);
+}
+
+nlohmann::ordered_json read_stored_json(std::string_view text) {
+  Problems problems;
+  auto value = read_bounded<nlohmann::ordered_json>(text, kMaxStoredBytes, problems);
+  if (value && problems.empty()) return *std::move(value);
+  const Problem problem = problems.take().front();
+  throw std::runtime_error(problem.pointer.empty()
+                               ? problem.message
+                               : fmt::format("{}: {}", problem.pointer, problem.message));
 }
 
 std::string write_json(const json& value) {

@@ -192,6 +192,15 @@ void publish_text(const fs::path& target, std::string_view text, FileSystem& sys
   commit(target, {std::as_bytes(std::span(text))}, Durability::power_cut, check, system);
 }
 
+bool has_leftovers(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (is_temporary_name(entry->path().filename().string())) return true;
+  }
+  return false;
+}
+
 std::size_t remove_leftovers(const fs::path& folder) {
   std::size_t removed = 0;
   std::error_code ignored;  // what cannot be removed now, the next holder finds again

@@ -27,6 +27,9 @@ void publish(const std::filesystem::path& target, ByteSpan image, Durability dur
 void publish_text(const std::filesystem::path& target, std::string_view text,
                   FileSystem& system = FileSystem::real());
 
+/// Whether there are temporaries in `folder`, of whomever.
+[[nodiscard]] bool has_leftovers(const std::filesystem::path& folder);
+
 /// Removes what killed processes left in `folder`; returns how many files. The caller holds the
 /// folder's lock, so every temporary in it has lost its owner, even when a new process now has the
 /// owner's number. What cannot be listed or removed now stays for the next holder.

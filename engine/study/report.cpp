@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/json_text.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
@@ -142,7 +143,12 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
 nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
   const JobPaths paths(folder);
   if (!is_present(paths.outcome())) return nullptr;
-  return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes), nullptr, false);
+  const std::string text = read_text(paths.outcome(), kMaxTextBytes);
+  try {
+    return read_stored_json(text);
+  } catch (const std::runtime_error&) {
+    return nullptr;
+  }
 }
 
 Scene read_job_scene(const std::filesystem::path& folder) {

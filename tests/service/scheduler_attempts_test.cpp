@@ -256,6 +256,21 @@ TEST_F(SchedulerThread, WaitsWhenNoWorkerCanBeStarted) {
   EXPECT_EQ(store_.find(job.id)->crashes, 0);
 }
 
+TEST_F(SchedulerThread, PausesAJobWithTheReasonWhenTheSystemGoesOnRefusingToStartIt) {
+  const Job job = add_real_job(store_, data_);
+  SchedulerSenses senses;
+  senses.clock = [clock = senses.clock] { return 1000.0 * clock(); };
+  scheduler_.emplace(store_, data_.path(), limits_, data_.path() / "missing", senses);
+  wait_until("the pause", [&] {
+    scheduler_->poke();
+    return store_.find(job.id)->state == JobState::paused;
+  });
+  const std::string reason = store_.find(job.id)->reason;
+  EXPECT_NE(reason.find("cannot start a worker"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("tried 8 times"), std::string::npos) << reason;
+  EXPECT_EQ(count_events(store_, job.id, "claimed"), 8);
+}
+
 TEST_F(SchedulerThread, DeletesEndedJobsAfterTheirTime) {
   limits_.retention_days = 1e-9;
   const Job job = add_real_job(store_, data_);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <string>
 
+#include "service/descriptor_budget.hpp"
 #include "tests/service/scheduler_support.hpp"
 
 namespace sluice::test {
@@ -177,6 +179,49 @@ TEST_F(WorkerProcessTest, IsToldToStopWhenItsServiceIsKilled) {
   ::kill(service, SIGKILL);
   ::waitpid(service, nullptr, 0);
   wait_until("the worker's obedience", [&] { return fs::exists(data_.path() / "told"); });
+}
+
+/// Lowers the limit of open files of this process for its life.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(rlim_t most) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit fewer{most, before_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &fewer), 0);
+  }
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(WorkerProcessTest, StartsInItsSandboxUnderAnyLimitOfOpenFilesOrSaysSo) {
+  WorkerCommand command;
+  command.program = sluice_program();
+  command.arguments = {"--version"};
+  command.folder = data_.path();
+  for (const rlim_t most : {64, 256, 257, 1000, 1001}) {
+    const FewDescriptors few(most);
+    WorkerProcess process(command);
+    EXPECT_EQ(end_of(process).exit_code, 0) << most;
+  }
+  const FewDescriptors few(18);
+  EXPECT_THROW(WorkerProcess{command}, WorkerStartError);
+}
+
+TEST(DescriptorBudget, LeavesTheServiceAndItsWorkersTheirFiles) {
+  EXPECT_EQ(connections_within(least_descriptor_limit(2) - 1, 2), 0);
+  for (const int workers : {1, 2, 64}) {
+    const std::uint64_t least = least_descriptor_limit(workers);
+    EXPECT_GT(connections_within(least, workers), 0);
+    for (const std::uint64_t limit : {least, std::uint64_t{1024}, std::uint64_t{65536}}) {
+      EXPECT_LT(static_cast<std::uint64_t>(connections_within(limit, workers) + 4 * workers),
+                limit);
+    }
+  }
+  EXPECT_GE(connections_within(1024, 2), 512);  // the usual limit lowers nothing
 }
 
 }  // namespace
