@@ -477,7 +477,8 @@ class ServiceWalk:
         if case.fault == faults.KILL:
             place.restart()
         elif not place.process:
-            pass  # it did not start, and has said why
+            if answer != 500:  # it did not start, which has to be for the disk
+                yield f"does not start: {document}"
         elif place.died():
             yield f"the service ended: {place.last_words()}"
             place.restart()

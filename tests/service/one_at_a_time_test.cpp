@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/store/errors.hpp"
 #include "service/retention.hpp"
 #include "tests/service/api_support.hpp"
 
