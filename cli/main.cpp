@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string_view>
@@ -84,6 +85,9 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
     return fail(ExitCode::invalid_scene, error.what());
   } catch (const StorageError& error) {
     return fail(exit_code_of(error.fault()), error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    const StorageError said = system_error(error);
+    return fail(exit_code_of(said.fault()), said.what());
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::internal_error, "out of memory: see sluice plan for what a scene needs");
   } catch (const std::exception& error) {

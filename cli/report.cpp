@@ -13,6 +13,7 @@
 #include "cli/job_names.hpp"
 #include "cli/service_client.hpp"
 #include "cli/verbs.hpp"
+#include "engine/store/errors.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/study/animation.hpp"
 
@@ -75,9 +76,19 @@ void write_files(const ReportArguments& arguments, const std::filesystem::path& 
                formatted(folder, arguments.tau, ReportFormat::text, arguments.colour));
 }
 
+/// A look at a job is also the time to make what its run could not leave. Who may only read the
+/// folder sees the report all the same.
+void leave_missing_report(const std::filesystem::path& folder) {
+  try {
+    publish_missing_report(folder);
+  } catch (const StorageError&) {
+  }
+}
+
 void report_folder(const ReportArguments& arguments, const std::filesystem::path& folder) {
   const ReportFormat format = arguments.json ? ReportFormat::json : arguments.format;
   const std::string shown = formatted(folder, arguments.tau, format, arguments.colour);
+  leave_missing_report(folder);
   if (!arguments.output.empty()) write_files(arguments, folder);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
 }

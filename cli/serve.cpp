@@ -156,6 +156,8 @@ void serve_or_end(ServeOptions& options) {
     throw CommandEnd(exit_code_of(error.fault()), error.what());
   } catch (const StorageError&) {
     throw;
+  } catch (const std::filesystem::filesystem_error&) {
+    throw;
   } catch (const std::runtime_error& error) {
     // The address or the token file.
     throw CommandEnd(ExitCode::usage, error.what());

@@ -8,6 +8,7 @@
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/json_text.hpp"
 #include "engine/scene/parse.hpp"
+#include "engine/store/errors.hpp"
 #include "service/admission.hpp"
 #include "service/api_routes.hpp"
 #include "service/job_json.hpp"
@@ -81,7 +82,13 @@ Extension replace_end_time(const ApiContext& context, Job job, double end_time) 
   const std::string extended = with_end_time(before, end_time);
   const Admitted admitted = admit_job_scene(extended, context.scheduler.limits());
   describe_scene(job, admitted.scene, admitted.estimate);
-  folder.publish_text(folder.paths().scene(), extended);
+  try {
+    folder.publish_text(folder.paths().scene(), extended);
+  } catch (const StorageError&) {
+    // It may be in place, with only its name not surely on the disk.
+    folder.publish_text(folder.paths().scene(), before);
+    throw;
+  }
   return {std::move(before), std::move(job.estimate)};
 }
 

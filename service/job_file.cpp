@@ -71,6 +71,12 @@ JobFile from_json(const json& object) {
 
 }  // namespace
 
+std::optional<JobState> held_in(JobState state) {
+  const bool is_held =
+      state == JobState::paused || state == JobState::cancelled || state == JobState::failed;
+  return is_held ? std::optional(state) : std::nullopt;
+}
+
 fs::path job_file_path(const fs::path& folder) { return folder / "job.json"; }
 
 std::string job_file_text(const JobFile& file) {
@@ -93,8 +99,7 @@ JobFile read_job_file(const fs::path& folder) {
 }
 
 void note_held(const fs::path& folder, std::optional<JobState> held) {
-  std::error_code ignored;
-  if (!fs::exists(job_file_path(folder), ignored)) return;
+  if (!is_present(job_file_path(folder))) return;
   JobFile file = read_job_file(folder);
   if (file.held == held) return;
   file.held = held;

@@ -23,6 +23,10 @@ struct JobFile {
   friend bool operator==(const JobFile&, const JobFile&) = default;
 };
 
+/// What `held` says of a job in this state. A rebuild could not tell it from the outcome: a job
+/// that failed may have left none.
+[[nodiscard]] std::optional<JobState> held_in(JobState state);
+
 /// `job.json` in a job's folder.
 [[nodiscard]] std::filesystem::path job_file_path(const std::filesystem::path& folder);
 /// What stands in it.

@@ -18,12 +18,8 @@ using Fault = JobStoreError::Fault;
 /// Longer than any caller waits; keeps infinities and NaN from the clock.
 constexpr double kLongestWait = 3600.0;  // s
 
-/// What a rebuild could not tell from the outcome: a job that failed may have left none.
-std::optional<JobState> held(JobState state) {
-  const bool is_held =
-      state == JobState::paused || state == JobState::cancelled || state == JobState::failed;
-  return is_held ? std::optional(state) : std::nullopt;
-}
+/// One more than a passing error of the disk needs. What lasts longer, the next start mends.
+constexpr int kNoteTries = 2;
 
 }  // namespace
 
@@ -68,10 +64,12 @@ void JobStore::Impl::commit_with_event(SqliteTransaction& transaction, const Job
 }
 
 void JobStore::Impl::note_in_folder(const Job& before, const Job& after) const {
-  if (held(before.state) == held(after.state) || !is_job_id(after.id)) return;
-  try {
-    note_held(data_ / "jobs" / after.id, held(after.state));
-  } catch (const StorageError&) {
+  if (held_in(before.state) == held_in(after.state) || !is_job_id(after.id)) return;
+  for (int n = 0; n < kNoteTries; ++n) {
+    try {
+      return note_held(data_ / "jobs" / after.id, held_in(after.state));
+    } catch (const StorageError&) {
+    }
   }
 }
 

@@ -12,6 +12,8 @@
 #include "engine/scene/estimate.hpp"
 #include "engine/scene/json_text.hpp"
 #include "engine/scene/parse.hpp"
+#include "engine/store/errors.hpp"
+#include "engine/store/file_system.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/new_folder.hpp"
 #include "service/admission.hpp"
@@ -50,7 +52,7 @@ struct Ending {
 };
 
 std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& report) {
-  if (!is_there(paths.outcome())) return std::nullopt;
+  if (!is_present(paths.outcome())) return std::nullopt;
   try {
     Ending ending;
     const auto object = read_stored_json(read_text(paths.outcome(), kMaxStoredBytes));
@@ -59,6 +61,12 @@ std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& re
     ending.reason = object.at("reason").get<std::string>();
     ending.end_time = object.at("end_time").get<double>();
     return ending;
+  } catch (const StorageError& error) {
+    if (error.fault() == StorageFault::io) throw;  // it may be whole
+    report(paths.root(), fmt::format("outcome.json is none of ours, so the job is taken for one "
+                                     "that goes on: {}",
+                                     error.what()));
+    return std::nullopt;
   } catch (const std::exception& error) {
     report(paths.root(), fmt::format("outcome.json cannot be read, so the job is taken for one "
                                      "that goes on: {}",
@@ -71,6 +79,8 @@ std::optional<JobFile> read_file(const JobPaths& paths, const RebuildReport& rep
   try {
     return read_job_file(paths.root());
   } catch (const StorageError& error) {
+    // One that cannot be read now may be whole.
+    if (error.fault() == StorageFault::io && is_present(job_file_path(paths.root()))) throw;
     report(paths.root(), fmt::format("its label, priority, threads and key are lost, and it is "
                                      "paused: {}",
                                      error.what()));
@@ -144,7 +154,7 @@ void decide_state(Job& job, const JobPaths& paths, const std::optional<JobFile>&
 /// ran is what a broken submission left.
 std::vector<fs::path> job_folders(const fs::path& data, const RebuildReport& report) {
   std::vector<fs::path> folders;
-  for (const fs::directory_entry& entry : fs::directory_iterator(data / "jobs")) {
+  for (const fs::directory_entry& entry : entries_of(data / "jobs")) {
     const fs::path& path = entry.path();
     if (path.filename().string().starts_with('.')) continue;  // being deleted
     if (entry.is_symlink() || !entry.is_directory() || !is_job_id(path.filename().string())) {
@@ -173,6 +183,15 @@ JobStore::Adoption read_folder(const fs::path& folder, const RebuildReport& repo
   return {std::move(job), file ? file->key : "", file ? file->body_hash : ""};
 }
 
+/// A passing error of the disk must not leave a job without its row until the next start.
+JobStore::Adoption read_surely(const fs::path& folder, const RebuildReport& report) {
+  try {
+    return read_folder(folder, report);
+  } catch (const StorageError&) {
+    return read_folder(folder, report);
+  }
+}
+
 /// Many in one transaction: each alone waits for the disk several times.
 std::size_t adopt(JobStore& store, const fs::path& data,
                   const std::vector<JobStore::Adoption>& adoptions, const RebuildReport& report) {
@@ -199,7 +218,7 @@ std::size_t rebuild_from_folders(JobStore& store, const fs::path& data,
   for (const fs::path& folder : job_folders(data, tell)) {
     if (store.find(folder.filename().string())) continue;
     try {
-      adoptions.push_back(read_folder(folder, tell));
+      adoptions.push_back(read_surely(folder, tell));
     } catch (const std::exception& error) {
       tell(folder, fmt::format("not taken: {}", error.what()));
     }

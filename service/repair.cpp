@@ -9,6 +9,7 @@
 #include "engine/scene/parse.hpp"
 #include "engine/store/job_folder.hpp"
 #include "engine/store/publish.hpp"
+#include "service/job_file.hpp"
 #include "service/retention.hpp"
 
 namespace sluice {
@@ -35,6 +36,7 @@ bool ends_elsewhere(const JobPaths& paths, const Job& job) {
 }
 
 void mend_folder(const JobPaths& paths, const Job& job) {
+  note_held(paths.root(), held_in(job.state));
   const bool elsewhere = ends_elsewhere(paths, job);
   if (!elsewhere && !has_leftovers(paths.root())) return;
   JobFolder folder = JobFolder::open(paths.root());  // which removes the leftovers

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "engine/run/insist.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/series_file.hpp"
 
@@ -40,7 +39,7 @@ void JobWriter::checkpoint_soon(const Simulation& simulation) {
   const double now = clock_.seconds();
   if (backoff_.waiting(now) || checkpoint_step_ == simulation.solver().step_count()) return;
   try {
-    try_checkpoint(simulation);
+    storing([&] { try_checkpoint(simulation); });
     backoff_.succeeded();
   } catch (const StorageError& error) {
     backoff_.failed(now);
@@ -110,8 +109,10 @@ void JobWriter::refresh_series(const Simulation& simulation) {
   const double start = clock_.seconds();
   if (simulation.samples().empty() || start < next_series_) return;
   try {
-    folder_->require_held();
-    write_series(folder_->paths().series(), simulation.samples());
+    storing([&] {
+      folder_->require_held();
+      write_series(folder_->paths().series(), simulation.samples());
+    });
   } catch (const StorageError& error) {
     if (!may_pass(error)) throw;
     warn("series.h5", error, 10.0);
@@ -134,12 +135,12 @@ void JobWriter::finish_series(const Simulation& simulation) {
 }
 
 void JobWriter::write_outcome(const Outcome& outcome) {
-  try {
-    folder_->publish_text(folder_->paths().outcome(), to_json(outcome).dump(2) + "\n");
-  } catch (const StorageError& error) {
-    reporter_->event("warning",
-                     {{"message", fmt::format("outcome.json was not written: {}", error.what())}});
-  }
+  const double patience =
+      outcome.exit_code == ExitCode::storage_failure ? 0.0 : options_.storage_patience;
+  insist(
+      patience,
+      [&] { folder_->publish_text(folder_->paths().outcome(), to_json(outcome).dump(2) + "\n"); },
+      [&](const StorageError& error, double wait) { warn("outcome.json", error, wait); });
 }
 
 std::optional<double> JobWriter::checkpoint_age() const {
@@ -154,19 +155,12 @@ void JobWriter::account(Account& account) const {
 }
 
 void JobWriter::persist(std::string_view what, const std::function<void()>& write) {
-  Backoff backoff(options_.storage_patience);
-  for (;;) {
-    try {
-      write();
-      return;
-    } catch (const StorageError& error) {
-      const double now = clock_.seconds();
-      backoff.failed(now);
-      if (backoff.exhausted() || !may_pass(error)) throw;
-      warn(what, error, backoff.next_try() - now);
-      std::this_thread::sleep_for(std::chrono::duration<double>(backoff.next_try() - now));
-    }
-  }
+  insist(
+      options_.storage_patience, write,
+      [&](const StorageError& error, double wait) {
+        if (!may_pass(error)) throw error;
+        warn(what, error, wait);
+      });
 }
 
 void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {

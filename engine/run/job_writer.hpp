@@ -41,7 +41,7 @@ class JobWriter {
   void refresh_series(const Simulation& simulation);
   /// Publishes it so that it survives a power cut, waiting for the disk.
   void finish_series(const Simulation& simulation);
-  /// Publishes outcome.json; a failure is only warned about.
+  /// Publishes outcome.json, waiting for the disk; once only where the disk has refused already.
   void write_outcome(const Outcome& outcome);
 
   /// Seconds since the last checkpoint was safe; nothing before the first.

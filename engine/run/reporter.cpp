@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
+#include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 
 namespace sluice {
@@ -130,12 +132,17 @@ void LoggingReporter::event(std::string_view name, const Json& fields) {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   Json line{{"at", fmt::format("{:%FT%TZ}", now)}};
   line.update(with_event(name, fields));
-  const FileDescriptor file(
-      ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644));
+  const FileDescriptor file(uninterrupted([&] {
+    return ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
+  }));
   if (file.get() < 0) return;
   const std::string text = line_of(line);
-  // One write, so that a line is whole or cut short at the end of the file.
-  [[maybe_unused]] const auto written = ::write(file.get(), text.data(), text.size());
+  try {
+    // One write as a rule, so that a line is whole or cut short at the end of the file.
+    write_whole(FileSystem::real(), file.get(), std::as_bytes(std::span(text)), log_);
+  } catch (const StorageError&) {
+    // A run goes on without its log.
+  }
 }
 
 }  // namespace sluice

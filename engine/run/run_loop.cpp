@@ -42,7 +42,15 @@ class RunLoop {
   /// a storage failure: they are outcomes.
   Outcome run() {
     Outcome outcome = attempt();
-    writer_.write_outcome(outcome);
+    try {
+      writer_.write_outcome(outcome);
+    } catch (const StorageError& error) {
+      reporter_->event("warning", {{"message", error.what()}});
+      // Who only reads files does not learn that it is complete: run again, it says so at once.
+      if (outcome.exit_code == ExitCode::done) {
+        return describe(ExitCode::storage_failure, error.what());
+      }
+    }
     return outcome;
   }
 

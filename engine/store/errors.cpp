@@ -80,6 +80,10 @@ StorageError system_error(std::string_view action, const std::filesystem::path& 
                       std::generic_category().message(error_number), advice_for(error_number))};
 }
 
+StorageError system_error(const std::filesystem::filesystem_error& error) {
+  return system_error("cannot look at or change", error.path1(), error.code().value());
+}
+
 StorageError in_file(const std::filesystem::path& path, const StorageError& error) {
   const std::string prefix = path.string() + ": ";
   const std::string_view message = error.what();

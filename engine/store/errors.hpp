@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -39,6 +40,22 @@ class StorageError : public std::runtime_error {
 /// `error_number`, with the fault that belongs to it.
 [[nodiscard]] StorageError system_error(std::string_view action, const std::filesystem::path& path,
                                         int error_number);
+
+/// The same of an error of std::filesystem: the path it names, and the fault of its error number.
+[[nodiscard]] StorageError system_error(const std::filesystem::filesystem_error& error);
+
+/// Does `action`, which makes and writes a file's image: errors of std::filesystem and a want of
+/// memory come out as StorageErrors too, so that whoever tries again has one thing to wait for.
+template <class Action>
+auto storing(const Action& action) {
+  try {
+    return action();
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw system_error(error);
+  } catch (const std::bad_alloc&) {
+    throw StorageError(StorageFault::io, "no memory left for what was to be written");
+  }
+}
 
 /// The same fault with the path put before the message unless it is there.
 [[nodiscard]] StorageError in_file(const std::filesystem::path& path, const StorageError& error);

@@ -10,15 +10,22 @@
 #include <cerrno>
 #include <cstdio>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "engine/store/errors.hpp"
 
 namespace sluice {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 /// The system may stop a larger write; Linux takes at most 2 GiB at once.
 constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
+
+/// A read that fails is made once more: what a passing error condemned would be lost for good.
+constexpr int kReadTries = 2;
 
 }  // namespace
 
@@ -32,14 +39,18 @@ std::uint64_t FileSystem::free_bytes(const std::filesystem::path& folder) {
 }
 
 int FileSystem::create_exclusive(const std::filesystem::path& path) {
-  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+  return uninterrupted([&] {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+  });
 }
 
 ssize_t FileSystem::write(int descriptor, const void* bytes, std::size_t count) {
-  return ::write(descriptor, bytes, count);
+  return uninterrupted([&] { return ::write(descriptor, bytes, count); });
 }
 
-int FileSystem::sync(int descriptor) { return ::fsync(descriptor); }
+int FileSystem::sync(int descriptor) {
+  return uninterrupted([&] { return ::fsync(descriptor); });
+}
 
 int FileSystem::close(int descriptor) { return ::close(descriptor); }
 
@@ -48,11 +59,12 @@ int FileSystem::rename(const std::filesystem::path& from, const std::filesystem:
 }
 
 int FileSystem::sync_folder(const std::filesystem::path& folder) {
-  const FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const FileDescriptor descriptor(
+      uninterrupted([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
   if (descriptor.get() < 0) {
     return -1;
   }
-  const int result = ::fsync(descriptor.get());
+  const int result = uninterrupted([&] { return ::fsync(descriptor.get()); });
   // A file system that knows no sync of folders has nothing more to offer.
   return result != 0 && errno == EINVAL ? 0 : result;
 }
@@ -91,7 +103,9 @@ void write_whole(FileSystem& system, int descriptor, ByteSpan bytes,
 
 InputFile::InputFile(const std::filesystem::path& path)
     // Without O_NONBLOCK the opening of a pipe waits for its writer.
-    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    : path_(path),
+      descriptor_(
+          uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK); })) {
   if (descriptor_.get() < 0) {
     throw system_error("cannot open", path, errno);
   }
@@ -107,6 +121,7 @@ InputFile::InputFile(const std::filesystem::path& path)
 }
 
 void InputFile::read(std::uint64_t offset, std::span<std::byte> into) const {
+  int tries = 0;
   while (!into.empty()) {
     const ssize_t count =
         ::pread(descriptor_.get(), into.data(), into.size(), static_cast<off_t>(offset));
@@ -115,6 +130,9 @@ void InputFile::read(std::uint64_t offset, std::span<std::byte> into) const {
     }
     if (count < 0 && errno != EIO) {
       throw system_error("cannot read", path_, errno);
+    }
+    if (count < 0 && ++tries < kReadTries) {
+      continue;
     }
     if (count <= 0) {  // A medium that gives an error here has lost the file as much as a short one
       throw StorageError(StorageFault::corrupt,
@@ -128,6 +146,31 @@ void InputFile::read(std::uint64_t offset, std::span<std::byte> into) const {
 void InputFile::drop_cache() const {
   // Only a hint: where it is refused the check reads the system's copy.
   (void)::posix_fadvise(descriptor_.get(), 0, 0, POSIX_FADV_DONTNEED);
+}
+
+fs::file_type file_type_at(const fs::path& path) {
+  std::error_code error;
+  const fs::file_type type = fs::status(path, error).type();
+  if (type == fs::file_type::none) {
+    throw system_error("cannot look at", path, error.value());
+  }
+  return type;
+}
+
+std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
+  std::vector<fs::directory_entry> entries;
+  std::error_code error;
+  fs::directory_iterator entry;
+  do {
+    entry = fs::directory_iterator(folder, error);
+  } while (error == std::errc::interrupted);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    entries.push_back(*entry);
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw system_error("cannot list the folder", folder, error.value());
+  }
+  return entries;
 }
 
 std::string read_text(const std::filesystem::path& path, std::uint64_t limit) {

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -32,6 +33,14 @@ class FileSystem {
   /// The machine's own.
   [[nodiscard]] static FileSystem& real();
 };
+
+/// Makes a system call again for as long as signals interrupt it.
+template <class Call>
+auto uninterrupted(const Call& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
 
 /// An open file, closed at the end of its life.
 class FileDescriptor {
@@ -75,6 +84,17 @@ class InputFile {
   FileDescriptor descriptor_;
   std::uint64_t size_ = 0;
 };
+
+/// What lies at `path`, links followed; not_found where nothing does. Throws StorageError when the
+/// system cannot tell: what cannot be looked at is not missing.
+[[nodiscard]] std::filesystem::file_type file_type_at(const std::filesystem::path& path);
+[[nodiscard]] inline bool is_present(const std::filesystem::path& path) {
+  return file_type_at(path) != std::filesystem::file_type::not_found;
+}
+
+/// All that a folder holds, in no order; nothing where there is no folder. Throws StorageError.
+[[nodiscard]] std::vector<std::filesystem::directory_entry> entries_of(
+    const std::filesystem::path& folder);
 
 /// A whole text file. One above `limit` bytes is refused as not ours.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path, std::uint64_t limit);

@@ -30,15 +30,10 @@ constexpr std::uint64_t kLargestScene = std::uint64_t{1} << 24;
 template <class Wanted>
 std::vector<fs::path> list(const fs::path& folder, const Wanted& wanted) {
   std::vector<fs::path> found;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (wanted(entry->path().filename().string())) {
-      found.push_back(entry->path());
+  for (const fs::directory_entry& entry : entries_of(folder)) {
+    if (wanted(entry.path().filename().string())) {
+      found.push_back(entry.path());
     }
-  }
-  if (error && error != std::errc::no_such_file_or_directory) {
-    throw system_error("cannot list the folder", folder, error.value());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -53,8 +48,9 @@ std::uint64_t step_of(const fs::path& path) {
 // --- the lock
 
 FileDescriptor open_lock(const fs::path& path) {
-  FileDescriptor descriptor(
-      ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+  FileDescriptor descriptor(uninterrupted([&] {
+    return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  }));
   if (descriptor.get() >= 0) {
     return descriptor;
   }
@@ -99,10 +95,7 @@ std::string holder(const FileDescriptor& descriptor) {
 }
 
 void lock_or_throw(const FileDescriptor& descriptor, const fs::path& path) {
-  int result = 0;
-  do {
-    result = ::flock(descriptor.get(), LOCK_EX | LOCK_NB);
-  } while (result != 0 && errno == EINTR);
+  const int result = uninterrupted([&] { return ::flock(descriptor.get(), LOCK_EX | LOCK_NB); });
   if (result != 0 && errno == EWOULDBLOCK) {
     throw StorageError(StorageFault::locked,
                        fmt::format("{}: this job is being run by {}; wait for it or stop it first",
@@ -227,8 +220,12 @@ JobFolder::JobFolder(JobPaths paths, FileSystem& system)
       paths_(std::move(paths)),
       lock_(paths_.lock()),
       system_(&system) {
-  remove_leftovers(paths_.root());
-  remove_leftovers(paths_.frames());
+  remove_leftovers();
+}
+
+void JobFolder::remove_leftovers() const {
+  sluice::remove_leftovers(paths_.root());
+  sluice::remove_leftovers(paths_.frames());
 }
 
 JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
@@ -243,7 +240,7 @@ JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
   JobFolder job(JobPaths(folder), system);
   require_free_folder(folder);
   job.publish_text(job.paths_.scene(), scene_text);
-  fs::create_directory(job.paths_.frames());
+  storing([&] { fs::create_directory(job.paths_.frames()); });
   return job;
 }
 
@@ -259,8 +256,7 @@ JobFolder JobFolder::open(const fs::path& folder, FileSystem& system) {
 }
 
 bool JobFolder::holds_job(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_regular_file(JobPaths(folder).scene(), ignored);
+  return file_type_at(JobPaths(folder).scene()) == fs::file_type::regular;
 }
 
 fs::path JobFolder::name() const {

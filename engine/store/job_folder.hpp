@@ -84,7 +84,7 @@ class JobFolder {
   /// when there is no scene in it; unwritable, locked, io.
   [[nodiscard]] static JobFolder open(const std::filesystem::path& folder,
                                       FileSystem& system = FileSystem::real());
-  /// Whether `open` would find a job there.
+  /// Whether `open` would find a job there. Throws StorageError when the system cannot tell.
   [[nodiscard]] static bool holds_job(const std::filesystem::path& folder);
 
   [[nodiscard]] const JobPaths& paths() const { return paths_; }
@@ -117,6 +117,9 @@ class JobFolder {
   /// of the newest's steps or later where such a one is left. Returns the removed files. One found
   /// damaged is renamed to `.bad` and does not count.
   std::vector<std::filesystem::path> prune();
+
+  /// Removes what killed processes left, and what failed writes of this one could not remove.
+  void remove_leftovers() const;
 
   /// Publishes a text in this folder, such as outcome.json.
   void publish_text(const std::filesystem::path& path, std::string_view text);

@@ -115,15 +115,16 @@ class UnfinishedFolder {
 
 bool is_unfinished(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
-  return name.starts_with('.') && name.ends_with(kUnfinished) && !entry.is_symlink() &&
-         entry.is_directory();
+  std::error_code ignored;
+  return name.starts_with('.') && name.ends_with(kUnfinished) &&
+         entry.symlink_status(ignored).type() == fs::file_type::directory;
 }
 
 }  // namespace
 
 void publish_folder(const fs::path& target, std::span<const FirstFile> files,
                     std::span<const std::string_view> folders, FileSystem& system) {
-  if (std::error_code ignored; fs::exists(fs::symlink_status(target, ignored))) {
+  if (storing([&] { return fs::exists(fs::symlink_status(target)); })) {
     throw StorageError(StorageFault::already_exists,
                        fmt::format("{}: is there already; choose another folder", target.string()));
   }
@@ -145,14 +146,14 @@ void publish_job_folder(const fs::path& target, std::string_view scene_text,
 }
 
 std::size_t remove_unfinished_folders(const fs::path& parent) {
-  std::vector<fs::path> found;
-  std::error_code error;
-  for (fs::directory_iterator entry(parent, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (is_unfinished(*entry)) found.push_back(entry->path());
+  std::size_t removed = 0;
+  for (const fs::directory_entry& entry : entries_of(parent)) {
+    std::error_code ignored;  // the next start finds what cannot be removed now
+    if (!is_unfinished(entry)) continue;
+    fs::remove_all(entry.path(), ignored);
+    ++removed;
   }
-  for (const fs::path& path : found) fs::remove_all(path, error);
-  return found.size();
+  return removed;
 }
 
 }  // namespace sluice

@@ -203,13 +203,16 @@ bool has_leftovers(const fs::path& folder) {
 
 std::size_t remove_leftovers(const fs::path& folder) {
   std::size_t removed = 0;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (is_temporary_name(entry->path().filename().string()) &&
-        entry->symlink_status().type() == fs::file_type::regular && fs::remove(entry->path())) {
-      ++removed;
+  std::error_code ignored;  // what cannot be removed now, the next holder finds again
+  try {
+    for (const fs::directory_entry& entry : entries_of(folder)) {
+      if (is_temporary_name(entry.path().filename().string()) &&
+          entry.symlink_status(ignored).type() == fs::file_type::regular &&
+          fs::remove(entry.path(), ignored)) {
+        ++removed;
+      }
     }
+  } catch (const StorageError&) {
   }
   return removed;
 }

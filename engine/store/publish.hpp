@@ -32,7 +32,7 @@ void publish_text(const std::filesystem::path& target, std::string_view text,
 
 /// Removes what killed processes left in `folder`; returns how many files. The caller holds the
 /// folder's lock, so every temporary in it has lost its owner, even when a new process now has the
-/// owner's number.
+/// owner's number. What cannot be listed or removed now stays for the next holder.
 std::size_t remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace sluice

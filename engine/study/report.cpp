@@ -122,7 +122,7 @@ const Reference* experiment_of(const Scene& scene) {
 
 std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
   if (scene.sensors.empty()) return {};
-  if (!std::filesystem::exists(paths.series())) {
+  if (!is_present(paths.series())) {
     throw StorageError(StorageFault::io,
                        fmt::format("{}: the run has written no series yet: report when it has run "
                                    "for a second",
@@ -156,7 +156,7 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
 
 nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
   const JobPaths paths(folder);
-  if (!std::filesystem::exists(paths.outcome())) return nullptr;
+  if (!is_present(paths.outcome())) return nullptr;
   const std::string text = read_text(paths.outcome(), kMaxTextBytes);
   try {
     return read_stored_json(text);
@@ -205,6 +205,20 @@ void publish_report(const std::filesystem::path& folder, const std::filesystem::
   publish_text(paths.report_markdown(), report_markdown(report));
   publish_text(paths.report_html(),
                report_html(report, job.series, picture_frames(folder, report)));
+}
+
+bool publish_missing_report(const std::filesystem::path& folder) {
+  const JobPaths paths(folder);
+  const auto has_all = [&] {
+    return is_present(paths.report()) && is_present(paths.report_markdown()) &&
+           is_present(paths.report_html());
+  };
+  if (has_all()) return true;
+  const nlohmann::ordered_json outcome = read_outcome(folder);
+  if (!outcome.is_object() || outcome.value("state", "") != "completed") return false;
+  const JobFolder held = JobFolder::open(folder);  // nobody else writes here meanwhile
+  publish_report(folder, folder);
+  return true;
 }
 
 }  // namespace sluice

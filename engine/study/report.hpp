@@ -95,4 +95,10 @@ struct JobRecord {
 void publish_report(const std::filesystem::path& folder, const std::filesystem::path& target,
                     double tau = kComparisonTau);
 
+/// Makes the report in the folder of a run that is complete and has none, or not all of it: one
+/// that was killed, or met a full disk, after its last step. Whether there is a whole one now; a
+/// run that is not complete gets none. Throws as publish_report(), and locked while a process works
+/// there.
+bool publish_missing_report(const std::filesystem::path& folder);
+
 }  // namespace sluice

@@ -331,6 +331,34 @@ class Failures(Sandbox):
             self.assertEqual(process.wait(), 0)
             self.assertEqual(self.digests("disk/job"), expected)
 
+    def test_an_outcome_that_cannot_be_written_is_no_success_and_is_made_by_running_again(self):
+        expected = self.reference()
+        self.expect(85, "run", self.write_scene(), "--folder", "job", "--stop-after-step", 200)
+        outcome = self.folder / "job" / "outcome.json"
+        outcome.unlink()
+        (outcome / "in the way").mkdir(parents=True)
+        result = self.expect(5, "run", "job", "--storage-patience", 0)
+        self.assertIn("outcome.json", result.stderr)
+        shutil.rmtree(outcome)
+        self.expect(0, "run", "job")
+        self.assertEqual(self.digests("job"), expected)
+        self.assert_tidy("job")
+
+    def test_a_report_that_a_run_could_not_leave_is_made_at_the_next_look(self):
+        path = self.write_scene(scene(end_time=0.05))
+        self.expect(0, "run", path, "--folder", "job")
+        kept = {name: (self.folder / "job" / name).read_text()
+                for name in ("report.json", "report.md", "report.html")}
+        for missing in ([*kept], ["report.html"]):
+            for name in missing:
+                (self.folder / "job" / name).unlink()
+            self.expect(0, "report", "job")
+            for name, text in kept.items():
+                self.assertEqual((self.folder / "job" / name).read_text(), text)
+        self.expect(85, "run", path, "--folder", "half", "--stop-after-step", 10)
+        self.expect(0, "report", "half")
+        self.assertFalse((self.folder / "half" / "report.json").exists())
+
     def test_a_folder_in_use_is_refused_with_the_process_that_holds_it(self):
         process = self.start("run", self.write_scene(scene(end_time=60.0)), "--folder", "job")
         self.wait_for(process, "started")

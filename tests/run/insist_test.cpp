@@ -1,0 +1,74 @@
+#include "engine/run/insist.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace sluice {
+namespace {
+
+const StorageError kPassing(StorageFault::io, "x: cannot write");
+
+/// Fails `failures` times and counts all tries.
+struct Write {
+  int failures = 0;
+  std::function<void()> failure = [] { throw kPassing; };
+  int tries = 0;
+  void operator()() {
+    if (++tries <= failures) failure();
+  }
+};
+
+TEST(Insist, TriesAgainAfterAFailureThatPassesAndTellsOfIt) {
+  Write write{1};
+  std::vector<double> waits;
+  insist(30.0, std::ref(write), [&](const StorageError& error, double wait) {
+    EXPECT_STREQ(error.what(), kPassing.what());
+    waits.push_back(wait);
+  });
+  EXPECT_EQ(write.tries, 2);
+  EXPECT_EQ(waits, std::vector<double>{0.5});  // the first wait of Backoff
+}
+
+TEST(Insist, WithoutPatienceTriesOnceAndThrowsTheFailureOn) {
+  Write write{100};
+  EXPECT_THROW(insist(0.0, std::ref(write), [](const StorageError&, double) {}), StorageError);
+  EXPECT_EQ(write.tries, 1);
+}
+
+TEST(Insist, WaitsForNothingThatNoWaitingMends) {
+  for (const StorageFault fault :
+       {StorageFault::corrupt, StorageFault::invalid_content, StorageFault::locked,
+        StorageFault::not_ours, StorageFault::already_exists, StorageFault::wrong_scene}) {
+    Write write{1, [fault] { throw StorageError(fault, "never"); }};
+    EXPECT_THROW(insist(30.0, std::ref(write), [](const StorageError&, double) {}), StorageError);
+    EXPECT_EQ(write.tries, 1) << to_string(fault);
+  }
+}
+
+TEST(Insist, TakesAWantOfMemoryAndErrorsOfTheFileSystemForPassingOnes) {
+  const std::filesystem::path frames = "job/frames";
+  const std::vector<std::function<void()>> failures{
+      [] { throw std::bad_alloc(); },
+      [&] {
+        throw std::filesystem::filesystem_error("cannot create directory", frames,
+                                                std::make_error_code(std::errc::io_error));
+      }};
+  for (const auto& failure : failures) {
+    Write write{1, failure};
+    insist(30.0, std::ref(write), [](const StorageError&, double) {});
+    EXPECT_EQ(write.tries, 2);
+  }
+}
+
+TEST(Insist, NeverTakesAnotherExceptionForAFailureOfTheDisk) {
+  Write write{1, [] { throw std::logic_error("a defect"); }};
+  EXPECT_THROW(insist(30.0, std::ref(write), [](const StorageError&, double) {}), std::logic_error);
+  EXPECT_EQ(write.tries, 1);
+}
+
+}  // namespace
+}  // namespace sluice
