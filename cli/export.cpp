@@ -9,6 +9,7 @@
 #include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
 #include "engine/ladder/markup.hpp"
+#include "engine/store/apart.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/publish.hpp"
@@ -57,13 +58,17 @@ std::string xdmf_grid(const std::string& file, const Frame& frame) {
   return text + "  </Grid>\n";
 }
 
+Frame read_harmless_frame(const fs::path& path) {
+  return read_harmless(path, [&] { return read_frame(path); });
+}
+
 void export_xdmf(const std::vector<fs::path>& frames, const fs::path& output) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n <Domain>\n"
       "  <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const fs::path& path : frames) {
     const fs::path reference = fs::absolute(path).lexically_relative(fs::absolute(output));
-    text += xdmf_grid(escaped(reference.string()), read_frame(path));
+    text += xdmf_grid(escaped(reference.string()), read_harmless_frame(path));
   }
   text += "  </Grid>\n </Domain>\n</Xdmf>\n";
   const fs::path target = output / "frames.xdmf";
@@ -74,7 +79,7 @@ void export_xdmf(const std::vector<fs::path>& frames, const fs::path& output) {
 
 void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
   for (const fs::path& path : frames) {
-    const Frame frame = read_frame(path);
+    const Frame frame = read_harmless_frame(path);
     std::string text = "time_s,id,x_m,y_m,vx_m_s,vy_m_s,pressure_Pa\n";
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
       text += fmt::format("{},{},{},{},{},{},{}\n", frame.time, frame.id[i], frame.x[i], frame.y[i],

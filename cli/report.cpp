@@ -26,11 +26,16 @@ struct ReportArguments {
   double tau = kComparisonTau;
   ReportFormat format = ReportFormat::text;
   bool json = false;
+  std::string outcome;  ///< JSON, for a run that left none
 };
 
-std::string formatted(const std::filesystem::path& folder, double tau, ReportFormat format) {
-  const JobRecord job = read_job(folder);
-  const Report report = make_report(job.scene, job.series, job.outcome, tau);
+std::string formatted(const ReportArguments& arguments, const std::filesystem::path& folder,
+                      ReportFormat format) {
+  JobRecord job = read_job(folder);
+  if (!job.outcome.is_object()) {
+    job.outcome = nlohmann::ordered_json::parse(arguments.outcome, nullptr, false);
+  }
+  const Report report = make_report(job.scene, job.series, job.outcome, arguments.tau);
   switch (format) {
     case ReportFormat::json:
       return report_json(report).dump(2) + "\n";
@@ -58,13 +63,12 @@ void write_files(const ReportArguments& arguments, const std::filesystem::path& 
                                  arguments.output.string(), error.message()));
   }
   publish_report(folder, arguments.output, arguments.tau);
-  publish_text(arguments.output / "report.txt",
-               formatted(folder, arguments.tau, ReportFormat::text));
+  publish_text(arguments.output / "report.txt", formatted(arguments, folder, ReportFormat::text));
 }
 
 void report_folder(const ReportArguments& arguments, const std::filesystem::path& folder) {
   const ReportFormat format = arguments.json ? ReportFormat::json : arguments.format;
-  const std::string shown = formatted(folder, arguments.tau, format);
+  const std::string shown = formatted(arguments, folder, format);
   if (!arguments.output.empty()) write_files(arguments, folder);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
@@ -107,6 +111,8 @@ void add_report(CLI::App& app) {
   verb->add_option(
       "--output", arguments->output,
       "Also write report.txt, report.json, report.md and report.html into this folder");
+  // The service knows how a run ended whose worker was lost.
+  verb->add_option("--outcome", arguments->outcome)->group("");
   add_service_switch(*verb, arguments->service, arguments->of_service);
   verb->footer(
       "Example: sluice report dambreak-paper --format html > dambreak-paper.html\n"

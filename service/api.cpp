@@ -209,8 +209,10 @@ StudyRecord find_study(const ApiContext& context, const std::string& id) {
                                  : "a study's id is the letter s and 20 characters of 0-9 and a-v");
 }
 
-Api::Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data)
-    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data))) {
+Api::Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data,
+         std::filesystem::path program)
+    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data),
+                                            std::move(program))) {
   finish_studies(*context_);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/scene/parse.hpp"
+#include "engine/store/apart.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 #include "engine/store/filter.hpp"
@@ -106,14 +107,8 @@ std::vector<double> picture_times(const Scene& scene) {
 }
 
 std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
-  if (scene.sensors.empty()) return {};
-  if (!std::filesystem::exists(paths.series())) {
-    throw StorageError(StorageFault::io,
-                       fmt::format("{}: the run has written no series yet: report when it has run "
-                                   "for a second",
-                                   paths.series().string()));
-  }
-  return read_series(paths.series());
+  if (scene.sensors.empty() || !std::filesystem::exists(paths.series())) return {};
+  return read_harmless(paths.series(), [&] { return read_series(paths.series()); });
 }
 
 }  // namespace
@@ -142,12 +137,13 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
 nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
   const JobPaths paths(folder);
   if (!std::filesystem::exists(paths.outcome())) return nullptr;
-  return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes), nullptr, false);
+  return nlohmann::ordered_json::parse(read_text(paths.outcome(), kMaxTextBytes, Links::refuse),
+                                       nullptr, false);
 }
 
 Scene read_job_scene(const std::filesystem::path& folder) {
-  ParseResult parsed =
-      parse_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes), StabilityCheck::skip);
+  ParseResult parsed = parse_scene(
+      read_text(JobPaths(folder).scene(), kMaxTextBytes, Links::refuse), StabilityCheck::skip);
   if (!parsed.scene) throw SceneError(parsed.problems.front());
   return *std::move(parsed.scene);
 }
@@ -180,7 +176,8 @@ std::vector<Frame> picture_frames(const std::filesystem::path& folder, const Sce
     last = index;
     try {
       if (std::filesystem::exists(paths.frame(index))) {
-        frames.push_back(read_frame(paths.frame(index)));
+        frames.push_back(
+            read_harmless(paths.frame(index), [&] { return read_frame(paths.frame(index)); }));
       }
     } catch (const StorageError&) {
       continue;  // A report without one of its pictures is still worth having.

@@ -87,7 +87,7 @@ TEST(SceneSchema, DescribesEveryKeyAndGivesEveryNumberAUnitAndARange) {
     const std::string type = property.value("type", "");
     if (type != "number" && type != "integer") return;
     ++numbers;
-    EXPECT_TRUE(property.contains("unit")) << pointer;
+    EXPECT_TRUE(property.contains("x-unit")) << pointer;
     EXPECT_TRUE(property.contains("maximum")) << pointer;
     EXPECT_TRUE(property.contains("minimum") || property.contains("exclusiveMinimum")) << pointer;
   };

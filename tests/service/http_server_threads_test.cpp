@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -194,6 +195,100 @@ TEST(HttpServerThreads, GivesUpOnClientsThatDoNotTakeTheirAnswer) {
   client.send(get("/huge"));
   wait_until("the server to give up", [&] { return !server.seen().empty(); });
   EXPECT_FALSE(server.seen().front().whole);
+}
+
+TEST(HttpServerThreads, ClientsThatNeverReadHoldNobody) {
+  HttpOptions options = quick_options();  // 4 threads
+  options.stall_seconds = 600;
+  Server server(options);
+  std::vector<std::unique_ptr<RawClient>> stalled;
+  std::string many;
+  for (int n = 0; n < 40; ++n) many += get("/long");
+  for (int n = 0; n < 40; ++n) {
+    stalled.push_back(std::make_unique<RawClient>(server.http.port()));
+    stalled.back()->take_little();
+    stalled.back()->send(many);
+  }
+  for (int n = 0; n < 20; ++n) EXPECT_EQ(text_of(server.ask(get("/alive"))), "GET /alive ");
+  EXPECT_EQ(text_of(server.ask(get("/long"))).size(), 100'000U);
+}
+
+TEST(HttpServerThreads, AnAnswerThatIsTakenLateIsWhole) {
+  HttpOptions options = quick_options();
+  options.stall_seconds = 600;
+  Server server(options);
+  RawClient client(server.http.port());
+  client.take_little();
+  for (int n = 0; n < 12; ++n) client.send(get("/long"));
+  client.send(get("/last", "Connection: close\r\n"));
+  (void)server.ask(get("/alive"));
+  for (int n = 0; n < 12; ++n) ASSERT_EQ(text_of(client.answer()), std::string(100'000, 'x'));
+  EXPECT_EQ(text_of(client.answer()), "GET /last ");
+  EXPECT_EQ(client.rest(), "");
+  for (const AccessRecord& record : server.seen()) EXPECT_TRUE(record.whole);
+}
+
+TEST(HttpServerThreads, WhatClientsDoNotTakeIsBoundedInTimeAndMemory) {
+  HttpOptions options = quick_options();
+  std::string many;
+  for (int n = 0; n < 40; ++n) many += get("/long");
+  const auto cut = [&](Server& server) {
+    return std::ranges::any_of(server.seen(), [](const AccessRecord& one) { return !one.whole; });
+  };
+  {
+    Server server(options);
+    RawClient client(server.http.port());
+    client.take_little();
+    client.send(many);
+    wait_until("the client to be cut off", [&] { return cut(server); });
+  }
+  options.stall_seconds = 600;
+  options.unsent_bytes = 250'000;
+  Server server(options);
+  std::vector<std::unique_ptr<RawClient>> stalled;
+  for (int n = 0; n < 8; ++n) {
+    stalled.push_back(std::make_unique<RawClient>(server.http.port()));
+    stalled.back()->take_little();
+    stalled.back()->send(many);
+  }
+  wait_until("one to make room", [&] { return cut(server); });
+}
+
+TEST(HttpServerThreads, HealthIsAnsweredWhenAllThreadsAreTaken) {
+  std::atomic<bool> release = false;
+  std::atomic<int> held = 0;
+  Server server(quick_options(), [&](const Request& request) {
+    if (request.path == "/hold") {
+      ++held;
+      while (!release) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return echo(request);
+  });
+  std::vector<std::unique_ptr<RawClient>> holding;
+  for (int n = 0; n < 8; ++n) {
+    holding.push_back(std::make_unique<RawClient>(server.http.port()));
+    holding.back()->send(get("/hold"));
+  }
+  wait_until("all threads to be taken", [&] { return held == 4; });
+  for (const char* const path : {"/livez", "/readyz"}) {
+    EXPECT_EQ(status_of(server.ask(get(path))), 200) << path;
+  }
+  release = true;
+}
+
+TEST(HttpServerThreads, ALongAnswerThatStallsMakesRoomForAnother) {
+  HttpOptions options = quick_options();
+  options.large_answers = 2;
+  options.stall_seconds = 600;
+  Server server(options);
+  std::vector<std::unique_ptr<RawClient>> stalled;
+  for (int n = 0; n < 2; ++n) {
+    stalled.push_back(std::make_unique<RawClient>(server.http.port()));
+    stalled.back()->take_little();
+    stalled.back()->send(get("/huge"));
+    (void)stalled.back()->until("200 OK");
+  }
+  wait_until("a place", [&] { return status_of(server.ask(get("/huge"))) == 200; });
 }
 
 TEST(HttpServerThreads, LimitsLargeAnswersSoThatShortOnesHaveThreads) {
