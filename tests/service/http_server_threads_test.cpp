@@ -22,6 +22,7 @@ Response echo(const Request& request) {
   Response response;
   response.content_type = "text/plain";
   response.body = request.method + " " + request.path + " " + request.body;
+  if (request.path == "/medium") response.body.assign(5'000, 'x');
   if (request.path == "/long") response.body.assign(100'000, 'x');
   if (request.path == "/huge") response.body.assign(12U << 20U, 'x');
   if (request.path == "/gone") response.file = "/nonexistent/file";
@@ -214,15 +215,16 @@ TEST(HttpServerThreads, ClientsThatNeverReadHoldNobody) {
 }
 
 TEST(HttpServerThreads, AnAnswerThatIsTakenLateIsWhole) {
+  constexpr int kMany = 120;
   HttpOptions options = quick_options();
   options.stall_seconds = 600;
   Server server(options);
   RawClient client(server.http.port());
-  client.take_little();
-  for (int n = 0; n < 12; ++n) client.send(get("/long"));
+  // More than both ends' buffers take.
+  for (int n = 0; n < kMany; ++n) client.send(get("/long"));
   client.send(get("/last", "Connection: close\r\n"));
   (void)server.ask(get("/alive"));
-  for (int n = 0; n < 12; ++n) ASSERT_EQ(text_of(client.answer()), std::string(100'000, 'x'));
+  for (int n = 0; n < kMany; ++n) ASSERT_EQ(text_of(client.answer()), std::string(100'000, 'x'));
   EXPECT_EQ(text_of(client.answer()), "GET /last ");
   EXPECT_EQ(client.rest(), "");
   for (const AccessRecord& record : server.seen()) EXPECT_TRUE(record.whole);
@@ -231,7 +233,7 @@ TEST(HttpServerThreads, AnAnswerThatIsTakenLateIsWhole) {
 TEST(HttpServerThreads, WhatClientsDoNotTakeIsBoundedInTimeAndMemory) {
   HttpOptions options = quick_options();
   std::string many;
-  for (int n = 0; n < 40; ++n) many += get("/long");
+  for (int n = 0; n < 300; ++n) many += get("/medium");
   const auto cut = [&](Server& server) {
     return std::ranges::any_of(server.seen(), [](const AccessRecord& one) { return !one.whole; });
   };
@@ -243,7 +245,7 @@ TEST(HttpServerThreads, WhatClientsDoNotTakeIsBoundedInTimeAndMemory) {
     wait_until("the client to be cut off", [&] { return cut(server); });
   }
   options.stall_seconds = 600;
-  options.unsent_bytes = 250'000;
+  options.unsent_bytes = 12'000;  // of two clients
   Server server(options);
   std::vector<std::unique_ptr<RawClient>> stalled;
   for (int n = 0; n < 8; ++n) {
