@@ -8,6 +8,7 @@
 #include "cli/job_data.hpp"
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
+#include "engine/ladder/table.hpp"
 #include "engine/store/dimensionless.hpp"
 #include "engine/store/filter.hpp"
 
@@ -108,7 +109,7 @@ void list_sensors(const std::vector<Series>& all, Format format) {
     const Json first = empty ? Json(nullptr) : Json(series.time.front());
     const Json last = empty ? Json(nullptr) : Json(series.time.back());
     if (format == Format::csv) {
-      fmt::print("{},{},{},{},{}\n", series.name, series.kind, series.size(),
+      fmt::print("{},{},{},{},{}\n", csv_field(series.name), series.kind, series.size(),
                  empty ? "" : first.dump(), empty ? "" : last.dump());
     }
     list.push_back(Json{{"name", series.name},

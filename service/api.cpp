@@ -97,12 +97,22 @@ Response answer_other_method(const Request& request, const std::set<std::string_
   return response;
 }
 
+/// RFC 9110, 9.3.7: `OPTIONS *` asks about the server as a whole.
+Response answer_asterisk() {
+  std::set<std::string_view> methods;
+  for (const Route& route : kRoutes) methods.insert(route.method);
+  return answer_other_method({"OPTIONS", "*", {}, {}, ""}, methods);
+}
+
 Response route(ApiContext& context, const Request& request) {
+  if (request.path == "*") return answer_asterisk();
   const std::string_view method =
       request.method == "HEAD" ? std::string_view("GET") : std::string_view(request.method);
+  std::string_view path = request.path;
+  if (path.size() > 1 && path.ends_with('/')) path.remove_suffix(1);  // means the same
   std::set<std::string_view> methods;
   for (const Route& candidate : kRoutes) {
-    auto parts = match(candidate.pattern, request.path);
+    auto parts = match(candidate.pattern, path);
     if (!parts) continue;
     if (candidate.method != method) {
       methods.insert(candidate.method);

@@ -144,6 +144,11 @@ std::optional<json> read_json(std::string_view text, Problems& problems) {
         "", fmt::format("the text has {} bytes; at most {} are read", text.size(), kMaxSceneBytes));
     return std::nullopt;
   }
+  // The parser takes a zero byte for the end of its input.
+  if (const std::size_t zero = text.find('\0'); zero != text.npos) {
+    problems.add("", fmt::format("byte {} is NUL: JSON holds none", zero));
+    return std::nullopt;
+  }
   json root;
   Builder builder(root, problems);
   if (!json::sax_parse(text.begin(), text.end(), &builder)) return std::nullopt;

@@ -151,6 +151,24 @@ TEST(ApiFiles, TheLogIsEmptyBeforeItBegins) {
   EXPECT_EQ(service.get(target).file, service.data.job(id) / "log.jsonl");
 }
 
+TEST(ApiMeta, ASlashAtTheEndMeansTheSame) {
+  Service service;
+  const std::string id = service.submit();
+  for (const std::string path : {"/v1/jobs", "/v1/schemas/scene", "/readyz"}) {
+    EXPECT_EQ(service.get(path + "/").body, service.get(path).body) << path;
+  }
+  EXPECT_EQ(service.get("/v1/jobs/" + id + "/").status, 200);
+  EXPECT_EQ(service.post("/v1/jobs/" + id + "/pause/").status, 200);
+  expect_problem(service.get("/v1/jobs//"), 404, "not-found");
+}
+
+TEST(ApiMeta, OptionsOfTheServerNameAllMethods) {
+  Service service;
+  const Response response = service.api.handle({"OPTIONS", "*", {}, {}, ""});
+  EXPECT_EQ(response.status, 204);
+  EXPECT_EQ(header_of(response, "Allow"), "OPTIONS, DELETE, GET, HEAD, POST");
+}
+
 TEST(ApiMeta, EveryProblemTypeCanBeLookedUp) {
   Service service;
   std::set<std::string_view> slugs;

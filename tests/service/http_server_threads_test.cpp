@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -83,6 +86,16 @@ TEST(HttpServerThreads, AnswersManyRequestsOnOneConnection) {
     ASSERT_EQ(status_of(answer), 200);
     ASSERT_EQ(text_of(answer), "POST / " + body);
   }
+}
+
+TEST(HttpServerThreads, SaysWhenItAnswered) {
+  Server server;
+  const std::string answer = server.ask(get("/"));
+  const std::size_t at = answer.find("\r\nDate: ");
+  ASSERT_NE(at, answer.npos) << answer;
+  std::tm utc{};
+  std::istringstream(answer.substr(at + 8, 29)) >> std::get_time(&utc, "%a, %d %b %Y %H:%M:%S GMT");
+  EXPECT_NEAR(static_cast<double>(::timegm(&utc)), static_cast<double>(std::time(nullptr)), 60.0);
 }
 
 TEST(HttpServerThreads, AnswersPipelinedRequestsInOrder) {
