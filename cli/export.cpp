@@ -9,6 +9,7 @@
 #include "cli/checks.hpp"
 #include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
+#include "engine/store/apart.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/publish.hpp"
@@ -27,12 +28,16 @@ struct ExportArguments {
   ExportFormat format = ExportFormat::vtkhdf;
 };
 
+Frame read_harmless_frame(const fs::path& path) {
+  return read_harmless(path, [&] { return read_frame(path); });
+}
+
 /// A file for each frame, and one that gives ParaView their times. Files are named beside each
 /// other, so that no character of a folder's name matters and the folder can be moved.
 void export_vtk(const std::vector<fs::path>& frames, const fs::path& output) {
   std::vector<std::pair<std::string, double>> files;
   for (const fs::path& path : frames) {
-    const Frame frame = read_frame(path);
+    const Frame frame = read_harmless_frame(path);
     files.emplace_back(vtk_name(path), frame.time);
     write_vtk(output / files.back().first, frame);
   }
@@ -43,7 +48,7 @@ void export_vtk(const std::vector<fs::path>& frames, const fs::path& output) {
 
 void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
   for (const fs::path& path : frames) {
-    const Frame frame = read_frame(path);
+    const Frame frame = read_harmless_frame(path);
     std::string text = "time_s,id,x_m,y_m,vx_m_s,vy_m_s,pressure_Pa\n";
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
       const Vec place = frame.position(i);

@@ -8,10 +8,10 @@
 namespace sluice {
 
 /// What a report needs of a service's job, in a folder of its own as long as this lives: scene,
-/// series and, once an attempt has ended, its outcome.
+/// its series where there is one and, once an attempt has ended, its outcome.
 class FetchedJob {
  public:
-  /// Throws CommandEnd(not_found) when there is no such job or it has no series yet.
+  /// Throws CommandEnd(not_found) when there is no such job.
   FetchedJob(ServiceClient& service, const std::string& id);
   ~FetchedJob();
   FetchedJob(const FetchedJob&) = delete;

@@ -8,6 +8,7 @@
 #include "cli/verbs.hpp"
 #include "engine/scene/parse.hpp"
 #include "engine/scene/problems.hpp"
+#include "engine/store/apart.hpp"
 #include "engine/store/checkpoint_io.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/series_file.hpp"
@@ -27,10 +28,12 @@ Scene JobData::scene() const {
 }
 
 std::vector<Series> JobData::series() const {
-  if (std::filesystem::exists(paths_.series())) return read_series(paths_.series());
+  if (std::filesystem::exists(paths_.series())) {
+    return read_harmless(paths_.series(), [&] { return read_series(paths_.series()); });
+  }
   for (const std::filesystem::path& path : paths_.checkpoints()) {
     try {
-      return split(read_checkpoint(path).samples);
+      return split(read_harmless(path, [&] { return read_checkpoint(path); }).samples);
     } catch (const StorageError&) {
       continue;  // Putting it aside is for the run, which holds the lock.
     }

@@ -20,7 +20,8 @@ namespace sluice {
 /// The member as a whole number in full; "?" when it is none.
 [[nodiscard]] std::string count_at(const nlohmann::ordered_json& object, std::string_view key);
 
-/// UTF-8 with each control character as '?'.
+/// UTF-8 with each character as '?' that a terminal obeys rather than shows: controls, and what
+/// turns the direction of a line.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// A size as "12.3 MiB"; "unknown" without one.

@@ -31,12 +31,16 @@ struct ReportArguments {
   ReportFormat format = ReportFormat::text;
   Quantity colour = Quantity::pressure;
   bool json = false;
+  std::string outcome;  ///< JSON, for a run that left none
 };
 
-std::string formatted(const std::filesystem::path& folder, double tau, ReportFormat format,
-                      Quantity colour) {
-  const JobRecord job = read_job(folder);
-  const Report report = make_report(job.scene, job.series, job.outcome, tau);
+std::string formatted(const ReportArguments& arguments, const std::filesystem::path& folder,
+                      ReportFormat format) {
+  JobRecord job = read_job(folder);
+  if (!job.outcome.is_object()) {
+    job.outcome = nlohmann::ordered_json::parse(arguments.outcome, nullptr, false);
+  }
+  const Report report = make_report(job.scene, job.series, job.outcome, arguments.tau);
   switch (format) {
     case ReportFormat::json:
       return report_json(report).dump(2) + "\n";
@@ -72,8 +76,7 @@ void write_files(const ReportArguments& arguments, const std::filesystem::path& 
                                  arguments.output.string(), error.message()));
   }
   publish_report(folder, arguments.output, arguments.tau);
-  publish_text(arguments.output / "report.txt",
-               formatted(folder, arguments.tau, ReportFormat::text, arguments.colour));
+  publish_text(arguments.output / "report.txt", formatted(arguments, folder, ReportFormat::text));
 }
 
 /// A look at a job is also the time to make what its run could not leave. Who may only read the
@@ -87,7 +90,7 @@ void leave_missing_report(const std::filesystem::path& folder) {
 
 void report_folder(const ReportArguments& arguments, const std::filesystem::path& folder) {
   const ReportFormat format = arguments.json ? ReportFormat::json : arguments.format;
-  const std::string shown = formatted(folder, arguments.tau, format, arguments.colour);
+  const std::string shown = formatted(arguments, folder, format);
   leave_missing_report(folder);
   if (!arguments.output.empty()) write_files(arguments, folder);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
@@ -138,6 +141,8 @@ void add_report(CLI::App& app) {
   verb->add_option(
       "--output", arguments->output,
       "Also write report.txt, report.json, report.md and report.html into this folder");
+  // The service knows how a run ended whose worker was lost.
+  verb->add_option("--outcome", arguments->outcome)->group("");
   add_service_switch(*verb, arguments->service, arguments->of_service);
   verb->footer(
       "Example: sluice report dambreak-paper --format html > dambreak-paper.html\n"

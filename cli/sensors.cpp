@@ -12,6 +12,7 @@
 #include "cli/job_data.hpp"
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
+#include "engine/ladder/table.hpp"
 #include "engine/store/dimensionless.hpp"
 #include "engine/store/filter.hpp"
 #include "service/series_view.hpp"
@@ -152,7 +153,7 @@ void list_sensors(const std::vector<Series>& all, Format format) {
     const Json last = empty ? Json(nullptr) : Json(series.time.back());
     const auto mean = series.mean_interval();
     if (format == Format::csv) {
-      fmt::print("{},{},{},{},{},{}\n", series.name, series.kind, series.size(),
+      fmt::print("{},{},{},{},{},{}\n", csv_field(series.name), series.kind, series.size(),
                  empty ? "" : first.dump(), empty ? "" : last.dump(),
                  mean ? Json(*mean).dump() : "");
     }

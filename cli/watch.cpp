@@ -64,7 +64,7 @@ class Watch {
       : service_(&service),
         options_(options),
         view_(chosen_form(options.form), options.interval, stdout) {
-    request_.target = job_target(id, fmt::format("?wait={}", kWait));
+    request_.target = job_target(id, fmt::format("?wait={}&progress=1", kWait));
     request_.timeout = kWait + kSlack;
   }
 

@@ -98,12 +98,22 @@ Response answer_other_method(const Request& request, const std::set<std::string_
   return response;
 }
 
+/// RFC 9110, 9.3.7: `OPTIONS *` asks about the server as a whole.
+Response answer_asterisk() {
+  std::set<std::string_view> methods;
+  for (const Route& route : kRoutes) methods.insert(route.method);
+  return answer_other_method({"OPTIONS", "*", {}, {}, ""}, methods);
+}
+
 Response route(ApiContext& context, const Request& request) {
+  if (request.path == "*") return answer_asterisk();
   const std::string_view method =
       request.method == "HEAD" ? std::string_view("GET") : std::string_view(request.method);
+  std::string_view path = request.path;
+  if (path.size() > 1 && path.ends_with('/')) path.remove_suffix(1);  // means the same
   std::set<std::string_view> methods;
   for (const Route& candidate : kRoutes) {
-    auto parts = match(candidate.pattern, request.path);
+    auto parts = match(candidate.pattern, path);
     if (!parts) continue;
     if (candidate.method != method) {
       methods.insert(candidate.method);
@@ -233,8 +243,10 @@ StudyRecord find_study(const ApiContext& context, const std::string& id) {
                                  : "a study's id is the letter s and 20 characters of 0-9 and a-v");
 }
 
-Api::Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data)
-    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data))) {
+Api::Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data,
+         std::filesystem::path program)
+    : context_(std::make_unique<ApiContext>(store, scheduler, std::filesystem::absolute(data),
+                                            std::move(program))) {
   finish_studies(*context_);
 }
 

@@ -17,7 +17,9 @@ struct ApiContext;
 /// none leaves as an exception. May be called from any thread.
 class Api {
  public:
-  Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data);
+  /// `program`: `sluice`, which makes reports.
+  Api(JobStore& store, Scheduler& scheduler, std::filesystem::path data,
+      std::filesystem::path program = "/proc/self/exe");
   ~Api();
   Api(const Api&) = delete;
   Api& operator=(const Api&) = delete;

@@ -4,16 +4,15 @@
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
-#include <semaphore>
 #include <string>
 #include <vector>
 
 #include "engine/store/job_folder.hpp"
+#include "service/answer_maker.hpp"
 #include "service/job_store.hpp"
 #include "service/message.hpp"
 #include "service/metrics.hpp"
 #include "service/scheduler.hpp"
-#include "service/series_cache.hpp"
 #include "service/slots.hpp"
 #include "service/study_store.hpp"
 
@@ -22,17 +21,17 @@ namespace sluice {
 /// Requests that may hold a thread for long; the rest of the server's 64 threads stay free.
 inline constexpr int kMaxStreams = 16;
 inline constexpr int kMaxWaits = 24;
-/// Series that are filtered and written as text at once: what that takes in memory is bounded.
-inline constexpr int kMaxViews = 4;
 /// s between looks at the progress of a job that is waited for: progress makes no event.
 inline constexpr double kProgressLook = 0.5;
 
 /// What the routes share. Every member may be used from any thread.
 struct ApiContext {
-  ApiContext(JobStore& jobs, Scheduler& workers, std::filesystem::path folder)
+  ApiContext(JobStore& jobs, Scheduler& workers, std::filesystem::path folder,
+             std::filesystem::path executable)
       : store(jobs),
         scheduler(workers),
         data(std::move(folder)),
+        program(std::move(executable)),
         studies(data),
         metrics(jobs.last_event()) {}
 
@@ -41,12 +40,12 @@ struct ApiContext {
   JobStore& store;
   Scheduler& scheduler;
   std::filesystem::path data;
+  std::filesystem::path program;  ///< `sluice`, which makes reports
   StudyStore studies;
   Metrics metrics;
-  SeriesCache series;
+  AnswerMaker maker;
   Slots streams{kMaxStreams};
   Slots waits{kMaxWaits};
-  std::counting_semaphore<kMaxViews> views{kMaxViews};
   std::atomic<bool> draining = false;
   std::mutex study_changes;  ///< one at a time: each touches many jobs
   std::mutex keyed_submits;  ///< one at a time, so that a repeated key does no work twice

@@ -48,16 +48,28 @@ class EventStream {
     const auto job = context_->store.find(job_.id);
     const auto events = context_->store.events(job_.id, last_, kBatch);
     for (const JobEvent& event : events) {
+      // Progress never follows the end that it led to.
+      if (job && is_end(event)) add_progress(*job, chunk);
       chunk += fmt::format("id: {}\nevent: {}\ndata: {}\n\n", event.number, event.name,
                            text_of(event_json(event)));
       last_ = event.number;
+      ended_ = is_end(event);
     }
-    if (job && job->progress != job_.progress) {
-      const auto progress = job_summary(*job, "")["progress"];
-      chunk += fmt::format("event: progress\ndata: {}\n\n", text_of(progress));
-    }
+    if (job && !ended_) add_progress(*job, chunk);
     over_ = !job || (is_ended(job->state) && events.size() < kBatch);
     if (job) job_ = *job;
+  }
+
+  void add_progress(const Job& job, std::string& chunk) {
+    if (job.progress == job_.progress) return;
+    const auto progress = job_summary(job, "")["progress"];
+    chunk += fmt::format("event: progress\ndata: {}\n\n", text_of(progress));
+    job_.progress = job.progress;
+  }
+
+  static bool is_end(const JobEvent& event) {
+    const auto state = job_state(event.name);
+    return state && is_ended(*state);
   }
 
   static std::string text_of(const nlohmann::ordered_json& value) {
@@ -69,6 +81,7 @@ class EventStream {
   std::int64_t last_;
   std::shared_ptr<void> place_;
   Clock::time_point sent_ = Clock::now();
+  bool ended_ = false;  ///< by the last event that was sent
   bool over_ = false;
 };
 

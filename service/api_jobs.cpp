@@ -35,19 +35,22 @@ Response shown(const ApiContext& context, const Job& job) {
   return response;
 }
 
-bool differs(const Job& a, const Job& b) {
-  return a.state != b.state || a.pending_stop != b.pending_stop || a.progress != b.progress ||
-         a.attempts != b.attempts || a.end_time != b.end_time;
+/// What a waiting client wants to be told of.
+enum class News { state, progress };
+
+bool differs(const Job& a, const Job& b, News news) {
+  return a.state != b.state || a.pending_stop != b.pending_stop || a.attempts != b.attempts ||
+         a.end_time != b.end_time || (news == News::progress && a.progress != b.progress);
 }
 
-/// Waits until the job is another than it was, has ended, or the time is over.
-Job wait_for_change(ApiContext& context, Job job, double seconds) {
+/// Waits until there is news of the job, it has ended, or the time is over.
+Job wait_for_change(ApiContext& context, Job job, double seconds, News news) {
   const auto place = context.waits.try_take();
   // Too many wait already: the answer as it is now is also an answer.
   if (!place) return job;
   const auto until = Clock::now() + std::chrono::duration<double>(seconds);
   const Job before = job;
-  while (!is_ended(job.state) && !differs(before, job) && !context.draining) {
+  while (!is_ended(job.state) && !differs(before, job, news) && !context.draining) {
     const double left = std::chrono::duration<double>(until - Clock::now()).count();
     if (left <= 0.0) break;
     context.store.wait_for_event(job.id, context.store.last_event(), std::min(left, kProgressLook));
@@ -86,6 +89,7 @@ Response list_jobs(ApiContext& context, const RouteRequest& request) {
 Response show_job(ApiContext& context, const RouteRequest& request) {
   QueryReader query(request.http);
   const auto wait = query.number("wait", 0.0, kLongestWait);
+  const News news = query.flag("progress") ? News::progress : News::state;
   query.finish();
   Job job = find_job(context, request.parts[0]);
   const std::string_view known = request.http.header("if-none-match");
@@ -93,7 +97,7 @@ Response show_job(ApiContext& context, const RouteRequest& request) {
   const auto matches = [&] { return !known.empty() && known == response.headers.front().second; };
   // With the tag of what the client has, news that it missed is no reason to wait.
   if (wait && (known.empty() || matches())) {
-    job = wait_for_change(context, std::move(job), *wait);
+    job = wait_for_change(context, std::move(job), *wait, news);
     response = shown(context, job);
   }
   if (matches()) {

@@ -19,6 +19,13 @@ struct Route {
 
 [[nodiscard]] std::span<const Route> all_routes();
 
+/// Of a report's page, which needs no script and no other address.
+inline constexpr std::string_view kPagePolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+
+/// Whether the path is a file and no link to one.
+[[nodiscard]] bool is_regular(const std::filesystem::path& path);
+
 // api_submit.cpp
 Response submit_job(ApiContext& context, const RouteRequest& request);
 // api_jobs.cpp
@@ -42,8 +49,9 @@ Response stream_events(ApiContext& context, const RouteRequest& request);
 // api_sensors.cpp
 Response list_sensors(ApiContext& context, const RouteRequest& request);
 Response show_sensor(ApiContext& context, const RouteRequest& request);
-// api_files.cpp
+// api_report.cpp
 Response show_report(ApiContext& context, const RouteRequest& request);
+// api_files.cpp
 Response show_log(ApiContext& context, const RouteRequest& request);
 Response list_files(ApiContext& context, const RouteRequest& request);
 Response send_file(ApiContext& context, const RouteRequest& request);

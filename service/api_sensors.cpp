@@ -7,6 +7,7 @@
 #include "engine/scene/parse.hpp"
 #include "engine/scene/problems.hpp"
 #include "engine/store/file_system.hpp"
+#include "engine/store/series_file.hpp"
 #include "service/api_routes.hpp"
 #include "service/query.hpp"
 #include "service/series_view.hpp"
@@ -24,30 +25,30 @@ enum class Format { json, csv };
 
 Scene scene_of(const ApiContext& context, const Job& job) {
   const JobPaths paths = context.paths(job.id);
-  ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
+  ParseResult result =
+      parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
   if (result.scene) return *std::move(result.scene);
   throw ApiError(ProblemType::internal,
                  fmt::format("the scene in the folder of job {} was altered", job.id));
 }
 
-const Series& find_series(const Scene& scene, const SeriesCache::Content& content,
-                          const std::string& name) {
+void require_sensor(const Scene& scene, const std::string& name) {
   std::vector<std::string_view> names;
   for (const Sensor& sensor : scene.sensors) names.push_back(sensor.name);
-  if (std::ranges::find(names, name) == names.end()) {
-    throw ApiError(ProblemType::no_such_sensor,
-                   names.empty()
-                       ? "this job's scene has no sensors"
-                       : fmt::format("there is no sensor {}: {}", name, hint(name, names)));
-  }
-  if (content) {
-    for (const Series& series : *content) {
-      if (series.name == name) return series;
-    }
-  }
-  throw ApiError(
-      ProblemType::no_samples_yet,
-      fmt::format("sensor {} has no samples yet: the job has not run long enough", name));
+  if (std::ranges::find(names, name) != names.end()) return;
+  throw ApiError(ProblemType::no_such_sensor,
+                 names.empty() ? "this job's scene has no sensors"
+                               : fmt::format("there is no sensor {}: {}", name, hint(name, names)));
+}
+
+ApiError no_samples_yet(const std::string& name) {
+  return {ProblemType::no_samples_yet,
+          fmt::format("sensor {} has no samples yet: the job has not run long enough", name)};
+}
+
+const Series* series_named(const std::vector<Series>& all, std::string_view name) {
+  const auto found = std::ranges::find(all, name, &Series::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 /// The query decides, else what the client accepts.
@@ -107,36 +108,44 @@ SeriesView view_of(const Series& series, const SeriesQuery& query, const Job& jo
   }
 }
 
-Response render(const SeriesView& view, const SensorQuery& asked, const Job& job) {
+/// A view as text, after one line of JSON with what its headers say.
+std::string rendered(const SeriesView& view, const SensorQuery& asked) {
+  const Json facts{{"samples", view.samples},
+                   {"provisional_after",
+                    view.provisional_after ? Json(*view.provisional_after) : Json(nullptr)}};
+  return facts.dump() + "\n" +
+         (asked.format == Format::json ? json_text(view, asked.series)
+                                       : csv_text(view, asked.series));
+}
+
+/// In a child process: reads the file and works it up.
+std::string make_series_text(const std::filesystem::path& path, const Scene& scene,
+                             const std::string& name, SensorQuery asked, const Job& job) {
+  const std::vector<Series> all = read_series(path);
+  const Series* const series = series_named(all, name);
+  if (series == nullptr) throw no_samples_yet(name);
+  if (asked.dimensionless) scale(asked.series, scene, *series);
+  return rendered(view_of(*series, asked.series, job), asked);
+}
+
+Response series_response(std::string text, const SensorQuery& asked, const Job& job) {
+  const std::size_t line = text.find('\n');
+  const Json facts = Json::parse(text.substr(0, line));
   Response response;
-  if (asked.format == Format::json) {
-    response.body = json_text(view, asked.series);
-  } else {
-    response.body = csv_text(view, asked.series);
+  response.body = std::move(text);
+  response.body.erase(0, line + 1);
+  if (asked.format == Format::csv) {
     response.content_type = "text/csv; charset=utf-8; header=present";
     // What the JSON form says inside.
-    response.headers.emplace_back("Sluice-Samples", fmt::format("{}", view.samples));
-    if (view.provisional_after) {
-      response.headers.emplace_back("Sluice-Provisional-After",
-                                    fmt::format("{}", *view.provisional_after));
+    response.headers.emplace_back("Sluice-Samples", facts["samples"].dump());
+    if (!facts["provisional_after"].is_null()) {
+      response.headers.emplace_back("Sluice-Provisional-After", facts["provisional_after"].dump());
     }
   }
   response.headers.emplace_back("Vary", "Accept");
   response.headers.emplace_back("Sluice-Job-State", std::string(to_string(job.state)));
   return response;
 }
-
-/// One of the few that make a view, for the life of this object; waits for it.
-class Turn {
- public:
-  explicit Turn(ApiContext& context) : context_(&context) { context_->views.acquire(); }
-  ~Turn() { context_->views.release(); }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
- private:
-  ApiContext* context_;
-};
 
 Json sensor_json(const Sensor& sensor, const Series* series) {
   Json columns = Json::array();
@@ -163,28 +172,32 @@ Response list_sensors(ApiContext& context, const RouteRequest& request) {
   QueryReader(request.http).finish();
   const Job job = find_job(context, request.parts[0]);
   const Scene scene = scene_of(context, job);
-  const auto content = context.series.read(context.paths(job.id).series());
-  Json sensors = Json::array();
-  for (const Sensor& sensor : scene.sensors) {
-    const Series* series = nullptr;
-    for (std::size_t n = 0; content && n < content->size(); ++n) {
-      if ((*content)[n].name == sensor.name) series = &(*content)[n];
+  const auto path = context.paths(job.id).series();
+  const auto list = [&](const std::vector<Series>& all) {
+    Json sensors = Json::array();
+    for (const Sensor& sensor : scene.sensors) {
+      sensors.push_back(sensor_json(sensor, series_named(all, sensor.name)));
     }
-    sensors.push_back(sensor_json(sensor, series));
-  }
-  return json_response(200, {{"sensors", std::move(sensors)}});
+    return Json{{"sensors", std::move(sensors)}}.dump();
+  };
+  return text_response(is_regular(path)
+                           ? context.maker.from_file(path, [&] { return list(read_series(path)); })
+                           : list({}),
+                       "application/json");
 }
 
 Response show_sensor(ApiContext& context, const RouteRequest& request) {
-  SensorQuery asked = read_query(request.http);
+  const SensorQuery asked = read_query(request.http);
   // The state before the samples: those of a job that has completed are final.
   const Job job = find_job(context, request.parts[0]);
   const Scene scene = scene_of(context, job);
-  const auto content = context.series.read(context.paths(job.id).series());
-  const Series& series = find_series(scene, content, request.parts[1]);
-  if (asked.dimensionless) scale(asked.series, scene, series);
-  const Turn turn(context);
-  return render(view_of(series, asked.series, job), asked, job);
+  const std::string& name = request.parts[1];
+  require_sensor(scene, name);
+  const auto path = context.paths(job.id).series();
+  if (!is_regular(path)) throw no_samples_yet(name);
+  std::string text = context.maker.from_file(
+      path, [&] { return make_series_text(path, scene, name, asked, job); });
+  return series_response(std::move(text), asked, job);
 }
 
 }  // namespace sluice

@@ -71,6 +71,26 @@ void HttpConnection::linger(Clock::time_point now) {
   lingers_ = true;
 }
 
+HttpConnection::Flushed HttpConnection::flush() {
+  std::string_view left = std::string_view(answer_->text).substr(answer_->sent);
+  while (!left.empty()) {
+    const ssize_t count =
+        ::send(socket_.get(), left.data(), left.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return Flushed::part;
+    if (count <= 0) return Flushed::gone;
+    answer_->sent += static_cast<std::size_t>(count);
+    left.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return Flushed::whole;
+}
+
+HttpConnection::Answer HttpConnection::take_answer() {
+  Answer answer = *std::move(answer_);
+  answer_.reset();
+  return answer;
+}
+
 bool HttpConnection::drop() {
   std::array<char, kReadBytes> bytes;  // NOLINT(*-member-init): filled by recv
   const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), 0);

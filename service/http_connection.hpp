@@ -7,6 +7,7 @@
 
 #include "engine/store/file_system.hpp"
 #include "service/http_head.hpp"
+#include "service/http_server.hpp"
 
 namespace sluice {
 
@@ -37,6 +38,23 @@ class HttpConnection {
   /// Whether the client has closed or sent too much.
   [[nodiscard]] bool drop();
 
+  /// An answer that was written into memory: sent as far as the client takes it.
+  struct Answer {
+    std::string text;
+    std::size_t sent = 0;
+    Clock::time_point until;  ///< the client must have taken it by then
+    AccessRecord record;
+    bool keep = true;  ///< whether another request may follow
+  };
+  enum class Flushed { whole, part, gone };
+  void put(Answer answer) { answer_ = std::move(answer); }
+  /// Sends what the client takes now, without waiting.
+  [[nodiscard]] Flushed flush();
+  /// What it has yet to take.
+  [[nodiscard]] const std::optional<Answer>& answer() const { return answer_; }
+  /// Takes the answer away, sent or not.
+  [[nodiscard]] Answer take_answer();
+
   [[nodiscard]] int socket() const { return socket_.get(); }
   [[nodiscard]] const std::string& peer() const { return peer_; }
   [[nodiscard]] bool lingers() const { return lingers_; }
@@ -52,6 +70,7 @@ class HttpConnection {
   std::string peer_;
   std::string received_;
   std::optional<RequestHead> head_;
+  std::optional<Answer> answer_;
   std::size_t head_bytes_ = 0;
   std::size_t dropped_ = 0;
   Clock::time_point since_;

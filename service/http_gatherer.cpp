@@ -33,10 +33,10 @@ std::runtime_error system_failure(std::string_view what) {
 
 }  // namespace
 
-HttpGatherer::HttpGatherer(const HttpOptions& options, Taker taker, HttpServer::Observer refused)
+HttpGatherer::HttpGatherer(const HttpOptions& options, Taker taker, HttpServer::Observer observer)
     : options_(options),
       taker_(std::move(taker)),
-      refused_(std::move(refused)),
+      observer_(std::move(observer)),
       listener_(listen_on(options_.host, options_.port)),
       poll_(::epoll_create1(EPOLL_CLOEXEC)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
@@ -63,9 +63,9 @@ void HttpGatherer::stop() {
   thread_.join();
 }
 
-void HttpGatherer::watch(int descriptor) const {
+void HttpGatherer::watch(int descriptor, Wanted wanted) const {
   epoll_event event{};
-  event.events = EPOLLIN;
+  event.events = wanted == Wanted::room ? EPOLLOUT : EPOLLIN;
   event.data.fd = descriptor;
   if (::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) != 0) {
     throw system_failure("cannot watch a connection");
@@ -94,7 +94,9 @@ void HttpGatherer::handle_event(int descriptor) {
   const auto place = waiting_.find(descriptor);
   if (place == waiting_.end()) return;
   HttpConnection& connection = *place->second;
-  if (!connection.lingers()) {
+  if (connection.answer()) {
+    send_on(place);
+  } else if (!connection.lingers()) {
     follow(place, connection.receive(options_.limits, Clock::now()));
   } else if (connection.drop()) {
     waiting_.erase(place);
@@ -120,7 +122,7 @@ void HttpGatherer::accept_all() {
 void HttpGatherer::admit(Connection connection) {
   const int descriptor = connection->socket();
   try {
-    watch(descriptor);
+    watch(descriptor, connection->answer() ? Wanted::room : Wanted::bytes);
   } catch (const std::runtime_error&) {
     return;  // closed with the connection
   }
@@ -131,10 +133,15 @@ int HttpGatherer::open_connections() const {
   return static_cast<int>(waiting_.size()) + handed_out_;
 }
 
+/// Those first that do not take their answer.
+HttpGatherer::Place HttpGatherer::longest_waiting() {
+  return std::ranges::min_element(waiting_, {}, [](const auto& entry) {
+    return std::pair(!entry.second->answer(), entry.second->since());
+  });
+}
+
 void HttpGatherer::close_longest_waiting() {
-  const auto oldest = std::ranges::min_element(
-      waiting_, {}, [](const auto& entry) { return entry.second->since(); });
-  if (oldest != waiting_.end()) waiting_.erase(oldest);
+  if (const Place place = longest_waiting(); place != waiting_.end()) cut(place);
 }
 
 void HttpGatherer::take_back() {
@@ -150,8 +157,50 @@ void HttpGatherer::take_back() {
     const int descriptor = connection->socket();
     admit(std::move(connection));
     const auto place = waiting_.find(descriptor);
-    if (place == waiting_.end() || place->second->lingers()) continue;
+    if (place == waiting_.end() || place->second->lingers() || place->second->answer()) continue;
     follow(place, place->second->advance(options_.limits, Clock::now()));
+  }
+  cut_beyond_memory();
+}
+
+void HttpGatherer::send_on(Place place) {
+  switch (place->second->flush()) {
+    case HttpConnection::Flushed::part:
+      return;
+    case HttpConnection::Flushed::gone:
+      return cut(place);
+    case HttpConnection::Flushed::whole:
+      break;
+  }
+  HttpConnection::Answer answer = place->second->take_answer();
+  answer.record.whole = true;
+  observer_(answer.record);
+  Connection connection = std::move(place->second);
+  waiting_.erase(place);
+  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection->socket(), nullptr);
+  if (!answer.keep) connection->linger(Clock::now());
+  // As if it had come back with all of it sent.
+  ++handed_out_;
+  give_back(std::move(connection));
+}
+
+/// Closes it; one whose answer is not all sent is told of.
+void HttpGatherer::cut(Place place) {
+  if (place->second->answer()) observer_(place->second->take_answer().record);
+  waiting_.erase(place);
+}
+
+void HttpGatherer::cut_beyond_memory() {
+  const auto unsent = [](const auto& entry) -> std::int64_t {
+    const auto& answer = entry.second->answer();
+    return answer ? static_cast<std::int64_t>(answer->text.size()) : 0;
+  };
+  std::int64_t total = 0;
+  for (const auto& entry : waiting_) total += unsent(entry);
+  while (total > options_.unsent_bytes) {
+    const Place place = longest_waiting();
+    total -= unsent(*place);
+    cut(place);
   }
 }
 
@@ -180,7 +229,7 @@ void HttpGatherer::refuse(Place place, const Refusal& refusal) {
   AccessRecord record;
   record.peer = connection.peer();
   record.status = problem_entry(refusal.type).status;
-  refused_(record);
+  observer_(record);
   connection.linger(Clock::now());
 }
 
@@ -188,6 +237,10 @@ void HttpGatherer::close_late(Clock::time_point now) {
   for (auto next = waiting_.begin(); next != waiting_.end();) {
     const auto place = next++;
     const HttpConnection& connection = *place->second;
+    if (connection.answer()) {
+      if (now > connection.answer()->until) cut(place);
+      continue;
+    }
     const double waited = seconds_between(connection.since(), now);
     if (connection.in_request() && !connection.lingers()) {
       if (waited <= options_.arrival_seconds) continue;

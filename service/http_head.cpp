@@ -98,12 +98,35 @@ void read_query(std::string_view text, Request& request) {
   }
 }
 
-void read_target(std::string_view target, const HttpLimits& limits, Request& request) {
+/// RFC 9112, 3.2.2: the path and query of http://AUTHORITY/path?query, and the authority; any other
+/// target as it is.
+std::string_view without_authority(std::string_view target, std::string& authority) {
+  const std::string scheme = lower(target.substr(0, target.find("://")));
+  if (scheme != "http" && scheme != "https") return target;
+  target.remove_prefix(scheme.size() + 3);
+  const std::size_t end = std::min(target.find_first_of("/?#"), target.size());
+  authority = target.substr(0, end);
+  if (authority.empty() || authority.find('@') != authority.npos) {
+    refuse("the request target has no host, or a user's name before it");
+  }
+  target.remove_prefix(end);
+  if (target.empty()) return "/";
+  if (target.front() != '/') refuse("the request target must have a path after its host");
+  return target;
+}
+
+void read_target(std::string_view target, const HttpLimits& limits, Request& request,
+                 std::string& authority) {
   if (target.size() > limits.target_bytes) {
     refuse(ProblemType::uri_too_long, fmt::format("the target has {} bytes, at most {} are read",
                                                   target.size(), limits.target_bytes));
   }
   const bool plain = std::ranges::all_of(target, [](char c) { return c > 0x20 && c < 0x7F; });
+  if (plain && target == "*" && request.method == "OPTIONS") {
+    request.path = target;
+    return;
+  }
+  if (plain) target = without_authority(target, authority);
   if (!plain || !target.starts_with('/')) {
     refuse("the request target must be a path of printable ASCII that begins with /");
   }
@@ -114,7 +137,8 @@ void read_target(std::string_view target, const HttpLimits& limits, Request& req
 }
 
 /// The request line; returns whether it is HTTP/1.1, not 1.0.
-bool read_request_line(std::string_view line, const HttpLimits& limits, Request& request) {
+bool read_request_line(std::string_view line, const HttpLimits& limits, Request& request,
+                       std::string& authority) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
   if (first == line.npos || first == last) refuse("the request line is not METHOD TARGET HTTP/1.1");
@@ -124,7 +148,7 @@ bool read_request_line(std::string_view line, const HttpLimits& limits, Request&
   }
   const std::string_view version = line.substr(last + 1);
   if (version != "HTTP/1.1" && version != "HTTP/1.0") refuse("the version must be HTTP/1.1");
-  read_target(line.substr(first + 1, last - first - 1), limits, request);
+  read_target(line.substr(first + 1, last - first - 1), limits, request, authority);
   return version == "HTTP/1.1";
 }
 
@@ -190,9 +214,12 @@ std::size_t read_body_size(const Request& request, const HttpLimits& limits) {
 RequestHead read_head(std::string_view head, const HttpLimits& limits) {
   RequestHead result;
   Request& request = result.request;
-  const bool newer = read_request_line(take_line(head), limits, request);
+  std::string authority;
+  const bool newer = read_request_line(take_line(head), limits, request, authority);
   read_headers(head, limits, request);
   if (newer && !request.headers.contains("host")) refuse("the Host header is missing");
+  // RFC 9112, 3.2.2: the target's host counts, whatever the header says.
+  if (!authority.empty()) request.headers["host"] = authority;
   result.body_bytes = read_body_size(request, limits);
   const std::string connection = lower(request.header("connection"));
   result.keep_alive = newer && connection.find("close") == std::string::npos;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,6 +34,19 @@ struct Ready {
   Response response;
   std::shared_ptr<OpenFile> file;
 };
+
+/// RFC 9110, 5.6.7: in English whatever the locale, and in UTC.
+std::string http_date(std::time_t now) {
+  constexpr std::array kDays{"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
+  constexpr std::array kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                               "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  return fmt::format("{}, {:02} {} {} {:02}:{:02}:{:02} GMT",
+                     kDays[static_cast<std::size_t>(utc.tm_wday)], utc.tm_mday,
+                     kMonths[static_cast<std::size_t>(utc.tm_mon)], utc.tm_year + 1900, utc.tm_hour,
+                     utc.tm_min, utc.tm_sec);
+}
 
 bool names_tag(std::string_view header, std::string_view tag) {
   return header == "*" || header.find(tag) != header.npos;
@@ -169,6 +183,7 @@ class Formatter final : public httplib::Server {
     Response& response = ready_->response;
     out.status = response.status;
     for (const auto& [name, value] : response.headers) out.set_header(name, value);
+    out.set_header("Date", http_date(std::time(nullptr)));
     out.set_header("X-Content-Type-Options", "nosniff");
     if (ready_->file) {
       const auto file = ready_->file;

@@ -19,6 +19,7 @@
 
 #include "service/http_gatherer.hpp"
 #include "service/http_response.hpp"
+#include "service/http_socket.hpp"
 #include "service/problem.hpp"
 #include "service/slots.hpp"
 
@@ -30,8 +31,16 @@ using Connection = HttpGatherer::Connection;
 
 /// s that answers get to be finished when the server stops.
 constexpr double kGraceSeconds = 2.0;
-/// An answer of this size fits into the socket's buffer, so that it never waits for the client.
+/// An answer up to this size is written into memory, so that no thread waits for the client.
 constexpr std::size_t kSmallAnswer = 128 * 1024;
+/// s without a byte after which a long answer loses its place to another.
+constexpr double kMayStall = 1.0;
+
+/// An answer that a thread is sending.
+struct LongAnswer {
+  int socket = -1;
+  const SocketSink* sink = nullptr;
+};
 
 /// A whole request on its way to a thread.
 struct Work {
@@ -66,7 +75,8 @@ class HttpServer::Impl {
               enqueue({std::move(connection), std::move(whole)});
             },
             observer_) {
-    for (int n = 0; n < options_.threads; ++n) threads_.emplace_back([this] { work(); });
+    for (int n = 0; n < options_.threads; ++n) threads_.emplace_back([this] { work(common_); });
+    threads_.emplace_back([this] { work(apart_); });
   }
 
   ~Impl() { stop(); }
@@ -83,16 +93,25 @@ class HttpServer::Impl {
   }
 
  private:
+  /// Requests that wait for one of the lane's threads.
+  struct Lane {
+    std::deque<Work> queue;
+    std::condition_variable work_there;
+  };
+
   void enqueue(Work work) {
+    const auto& apart = options_.apart;
+    const bool is_apart = std::ranges::find(apart, work.whole.request.path) != apart.end();
+    Lane& lane = is_apart ? apart_ : common_;
     {
       const std::scoped_lock lock(mutex_);
-      queue_.push_back(std::move(work));
+      lane.queue.push_back(std::move(work));
     }
-    work_there_.notify_one();
+    lane.work_there.notify_one();
   }
 
-  void work() {
-    while (auto work = next_work()) {
+  void work(Lane& lane) {
+    while (auto work = next_work(lane)) {
       const bool kept = answer(*work);
       // Before it is given back: its number may then belong to another connection.
       forget(work->connection->socket());
@@ -101,12 +120,12 @@ class HttpServer::Impl {
     }
   }
 
-  std::optional<Work> next_work() {
+  std::optional<Work> next_work(Lane& lane) {
     std::unique_lock lock(mutex_);
-    work_there_.wait(lock, [this] { return !queue_.empty() || quit_; });
-    if (queue_.empty()) return std::nullopt;
-    Work work = std::move(queue_.front());
-    queue_.pop_front();
+    lane.work_there.wait(lock, [&] { return !lane.queue.empty() || quit_; });
+    if (lane.queue.empty()) return std::nullopt;
+    Work work = std::move(lane.queue.front());
+    lane.queue.pop_front();
     busy_.push_back(work.connection->socket());
     return work;
   }
@@ -119,20 +138,45 @@ class HttpServer::Impl {
     work_done_.notify_all();
   }
 
-  /// Whether the connection can be kept.
+  /// Whether the connection can be kept. An answer that is not all sent then goes with it.
   bool answer(const Work& work) {
     const auto start = Clock::now();
     const Request& request = work.whole.request;
     Response response = respond(request);
     const bool streams = static_cast<bool>(response.stream);
-    const auto place = take_place(response);
-    const bool keep = work.whole.keep_alive && !stopping_;
+    const bool is_long = long_bytes(response) > 0;
     SocketSink sink(work.connection->socket(), options_.stall_seconds);
-    const Written written = write_response(sink, request, std::move(response),
-                                           keep ? Afterwards::keep : Afterwards::close);
-    observer_({request.method, request.path, work.connection->peer(), written.status,
-               seconds_since(start), written.whole, streams});
+    const auto place = is_long ? take_place(response, work.connection->socket(), sink) : nullptr;
+    const bool keep = work.whole.keep_alive && !stopping_;
+    const Afterwards afterwards = keep ? Afterwards::keep : Afterwards::close;
+    AccessRecord record{request.method, request.path, work.connection->peer(), 0, 0.0,
+                        false,          streams};
+    if (!streams && !place) {
+      StringSink text;
+      record.status = write_response(text, request, std::move(response), afterwards).status;
+      record.seconds = seconds_since(start);
+      return send(*work.connection, std::move(text.text), std::move(record), keep);
+    }
+    const Written written = write_response(sink, request, std::move(response), afterwards);
+    if (place) forget_long(sink);
+    record.status = written.status;
+    record.seconds = seconds_since(start);
+    record.whole = written.whole;
+    observer_(record);
     return keep && written.whole;
+  }
+
+  bool send(HttpConnection& connection, std::string text, AccessRecord record, bool keep) {
+    const std::chrono::duration<double> time(options_.stall_seconds +
+                                             static_cast<double>(text.size()) / kSlowestClient);
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
+    connection.put({std::move(text), 0, until, std::move(record), keep});
+    const auto flushed = connection.flush();
+    if (flushed == HttpConnection::Flushed::part && !stopping_) return true;
+    AccessRecord done = connection.take_answer().record;
+    done.whole = flushed == HttpConnection::Flushed::whole;
+    observer_(done);
+    return keep && done.whole;
   }
 
   Response respond(const Request& request) {
@@ -144,16 +188,25 @@ class HttpServer::Impl {
     }
   }
 
-  /// A share of the memory and the threads for large answers, or none for a small one. Without one
-  /// left the answer becomes a refusal.
-  std::shared_ptr<void> take_place(Response& response) {
+  /// Size of a body or file that is sent from a thread of its own; 0 for one that is not.
+  static std::uintmax_t long_bytes(const Response& response) {
     std::error_code missing;
     const std::uintmax_t bytes =
         response.file ? std::filesystem::file_size(*response.file, missing) : response.body.size();
-    if (bytes <= kSmallAnswer || missing) return nullptr;
+    return bytes <= kSmallAnswer || missing ? 0 : bytes;
+  }
+
+  /// A share of the memory and the threads for long answers. Without one left, the client that has
+  /// taken nothing for longest makes room; where none stalls, the answer becomes a refusal.
+  std::shared_ptr<void> take_place(Response& response, int socket, const SocketSink& sink) {
     const auto least = options_.large_bytes / options_.large_answers;
-    auto place = large_.try_take(std::max(least, static_cast<std::int64_t>(response.body.size())));
-    if (!place) {
+    const auto share = std::max(least, static_cast<std::int64_t>(response.body.size()));
+    auto place = large_.try_take(share);
+    while (!place && cut_longest_stalled()) place = large_.try_take(share, kMayStall);
+    if (place) {
+      const std::scoped_lock lock(mutex_);
+      long_.push_back({socket, &sink});
+    } else {
       response = problem_response(ProblemType::overloaded,
                                   "too many large answers are being sent: try again in a second");
       response.headers.emplace_back("Retry-After", "1");
@@ -161,14 +214,33 @@ class HttpServer::Impl {
     return place;
   }
 
+  bool cut_longest_stalled() {
+    const std::scoped_lock lock(mutex_);
+    const auto found = std::ranges::max_element(
+        long_, {}, [](const LongAnswer& one) { return one.sink->stalled_for(); });
+    if (found == long_.end() || found->sink->stalled_for() < kMayStall) return false;
+    ::shutdown(found->socket, SHUT_RDWR);
+    long_.erase(found);
+    return true;
+  }
+
+  void forget_long(const SocketSink& sink) {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(long_, [&](const LongAnswer& one) { return one.sink == &sink; });
+  }
+
   void finish_work() {
     std::unique_lock lock(mutex_);
-    const auto idle = [this] { return queue_.empty() && busy_.empty(); };
+    const auto idle = [this] {
+      return common_.queue.empty() && apart_.queue.empty() && busy_.empty();
+    };
     work_done_.wait_for(lock, std::chrono::duration<double>(kGraceSeconds), idle);
-    queue_.clear();
+    common_.queue.clear();
+    apart_.queue.clear();
     for (const int socket : busy_) ::shutdown(socket, SHUT_RDWR);
     quit_ = true;
-    work_there_.notify_all();
+    common_.work_there.notify_all();
+    apart_.work_there.notify_all();
     work_done_.wait(lock, idle);
   }
 
@@ -179,10 +251,11 @@ class HttpServer::Impl {
   std::atomic<bool> stopping_ = false;
 
   std::mutex mutex_;
-  std::condition_variable work_there_;
   std::condition_variable work_done_;
-  std::deque<Work> queue_;
-  std::vector<int> busy_;  ///< sockets that are being answered
+  Lane common_;
+  Lane apart_;
+  std::vector<LongAnswer> long_;  ///< that are being sent
+  std::vector<int> busy_;         ///< sockets that are being answered
   bool quit_ = false;
 
   // The gatherer hands out work as soon as it lives.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "service/http_guard.hpp"
 #include "service/http_head.hpp"
@@ -15,13 +16,15 @@ namespace sluice {
 struct HttpOptions {
   std::string host = "127.0.0.1";
   int port = 8080;  ///< 0: any free one
-  int threads = 64;
-  int connections = 512;                ///< beyond it the one that has waited longest is closed
-  int large_answers = 24;               ///< that are sent at once: files and long bodies
-  std::int64_t large_bytes = 32 << 20;  ///< of the bodies of those together
-  double arrival_seconds = 10;          ///< for a whole request, from its first byte
-  double idle_seconds = 30;             ///< between requests
-  double stall_seconds = 10;            ///< without a byte taken by the client
+  int threads = 112;
+  int connections = 512;                 ///< beyond it the one that has waited longest is closed
+  int large_answers = 24;                ///< that are sent at once: files and long bodies
+  std::int64_t unsent_bytes = 32 << 20;  ///< of other answers that clients have yet to take
+  std::vector<std::string> apart{"/livez", "/readyz"};  ///< paths with a thread of their own
+  std::int64_t large_bytes = 32 << 20;                  ///< of the bodies of those together
+  double arrival_seconds = 10;  ///< for a whole request, from its first byte
+  double idle_seconds = 30;     ///< between requests
+  double stall_seconds = 10;    ///< without a byte taken by the client
   HttpLimits limits;
   GuardOptions guard;
 };
@@ -43,7 +46,9 @@ struct AccessRecord {
 
 /// The HTTP server. One thread accepts and gathers requests in memory, bounded in bytes, lines and
 /// time, so that slow or silent clients cost no thread; whole requests go to a pool of threads,
-/// which guard them, ask the handler and write its answer. Keep-alive; no TLS: put a proxy in
+/// which guard them and ask the handler. What a client does not take of a short answer goes back to
+/// the first thread, so that clients that do not read cost no thread either; long answers have
+/// places, of which one that stalls makes room for another. Keep-alive; no TLS: put a proxy in
 /// front.
 class HttpServer {
  public:

@@ -25,8 +25,6 @@ using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 constexpr int kBacklog = 511;
 /// So much of an answer the system takes at once, whatever the client does, bytes.
 constexpr int kSendBuffer = 256 * 1024;
-/// Below that, a client that takes its answer slowly is cut off, bytes/s.
-constexpr double kSlowest = 16 * 1024.0;
 
 Addresses resolve(const std::string& host, int port) {
   addrinfo wanted{};
@@ -121,16 +119,25 @@ SocketSink::SocketSink(int socket, double stall_seconds)
     : socket_(socket), stall_seconds_(stall_seconds) {}
 
 bool SocketSink::wait_for_room() {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
+  stalled_since_ = start.time_since_epoch().count();
   pollfd room{socket_, POLLOUT, 0};
   int ready = 0;
   do {
     ready = ::poll(&room, 1, static_cast<int>(stall_seconds_ * 1000.0));
   } while (ready < 0 && errno == EINTR);
-  waited_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  stalled_since_ = 0;
+  waited_ += std::chrono::duration<double>(Clock::now() - start).count();
   const bool crawls =
-      waited_ > stall_seconds_ && static_cast<double>(written_) < kSlowest * waited_;
+      waited_ > stall_seconds_ && static_cast<double>(written_) < kSlowestClient * waited_;
   return ready > 0 && (room.revents & POLLOUT) != 0 && !crawls;
+}
+
+double SocketSink::stalled_for() const {
+  const Clock::rep since = stalled_since_;
+  if (since == 0) return 0.0;
+  return std::chrono::duration<double>(Clock::now().time_since_epoch() - Clock::duration(since))
+      .count();
 }
 
 bool SocketSink::write(const char* bytes, std::size_t count) {

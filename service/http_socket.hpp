@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <string>
 
 #include "engine/store/file_system.hpp"
@@ -24,19 +26,26 @@ struct Listener {
 /// "127.0.0.1:54321" of the other end.
 [[nodiscard]] std::string peer_name(int socket);
 
+/// Below that, a client that takes its answer slowly is cut off, bytes/s.
+inline constexpr double kSlowestClient = 16 * 1024.0;
+
 /// Writes to a socket that does not block. Gives up when the client takes nothing for
 /// `stall_seconds`, or is slower than 16 KiB/s over more than that time.
 class SocketSink final : public ByteSink {
  public:
   SocketSink(int socket, double stall_seconds);
   bool write(const char* bytes, std::size_t count) override;
+  /// For how long the client has taken nothing, s; from any thread.
+  [[nodiscard]] double stalled_for() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
   bool wait_for_room();
 
   int socket_;
   double stall_seconds_;
-  double waited_ = 0.0;  ///< s
+  double waited_ = 0.0;                        ///< s
+  std::atomic<Clock::rep> stalled_since_ = 0;  ///< 0: it does not
   std::size_t written_ = 0;
 };
 

@@ -147,8 +147,9 @@ void append_optional(std::string& out, const std::optional<double>& value) {
 Series decimate(const Series& series, std::size_t max_points) {
   if (series.size() <= max_points) return series;
   const std::size_t width = series.columns.size();
-  const std::size_t parts = std::max<std::size_t>(1, max_points / (3 * width));
-  std::set<std::size_t> kept;
+  // Where a series begins and ends is part of what it shows.
+  std::set<std::size_t> kept{0, series.size() - 1};
+  const std::size_t parts = std::max<std::size_t>(1, (max_points - kept.size()) / (3 * width));
   for (std::size_t part = 0; part < parts; ++part) {
     const Span span{part * series.size() / parts, (part + 1) * series.size() / parts};
     for (std::size_t column = 0; column < width; ++column) {

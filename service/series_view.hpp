@@ -33,8 +33,9 @@ enum class SeriesState { growing, final };
 /// second.
 [[nodiscard]] SeriesView make_view(const Series& raw, const SeriesQuery& query, SeriesState state);
 
-/// At most `max_points` samples of a series, in order, that keep the least and the greatest value
-/// of every column and its first dry sample in each of equal parts. At least 3 per column.
+/// At most `max_points` (10 or more) samples of a series, in order: the first, the last, and in
+/// each of equal parts the least and the greatest value of every column and its first dry sample.
+/// One part has up to 3 per column, however few may be kept.
 [[nodiscard]] Series decimate(const Series& series, std::size_t max_points);
 
 /// "time_s,value,weight" and one line per sample; an empty cell where there is no value.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 
 #include "engine/ladder/markup.hpp"
@@ -53,16 +54,19 @@ std::string markdown_row(const std::vector<std::string>& row) {
   return line + "\n";
 }
 
-std::string csv_cell(const std::string& text) {
-  if (text == kNone) return {};
-  if (text.find_first_of("\",\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    quoted += letter;
-    if (letter == '"') quoted += '"';
-  }
-  return quoted + "\"";
+bool is_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
 }
+
+/// Spreadsheets compute a cell that begins like this, quoted or not.
+bool looks_like_formula(std::string_view text) {
+  constexpr std::string_view kFirst = "=+-@\t\r";
+  return !text.empty() && kFirst.find(text.front()) != kFirst.npos && !is_number(text);
+}
+
+std::string csv_cell(const std::string& text) { return text == kNone ? "" : csv_field(text); }
 
 std::string csv_row(const std::vector<std::string>& row) {
   std::string line;
@@ -138,6 +142,17 @@ std::string table_html(const Table& table) {
     text += "</tr>\n";
   }
   return text + "</tbody></table></div>\n";
+}
+
+std::string csv_field(std::string_view text) {
+  const bool formula = looks_like_formula(text);
+  if (!formula && text.find_first_of("\",;\t\n\r") == text.npos) return std::string(text);
+  std::string quoted = formula ? "\"'" : "\"";
+  for (const char letter : text) {
+    quoted += letter;
+    if (letter == '"') quoted += '"';
+  }
+  return quoted + "\"";
 }
 
 std::string table_csv(const Table& table) {

@@ -29,6 +29,9 @@ struct Table {
 [[nodiscard]] std::string table_markdown(const Table& table);
 /// A heading and a <table>; everything escaped.
 [[nodiscard]] std::string table_html(const Table& table);
+/// A field of RFC 4180. A text that a spreadsheet would compute, which begins with = + - @, a tab
+/// or a carriage return and is no number, gets an apostrophe in front.
+[[nodiscard]] std::string csv_field(std::string_view text);
 /// RFC 4180 with lines that end in a line feed; "-" becomes an empty field.
 [[nodiscard]] std::string table_csv(const Table& table);
 

@@ -25,7 +25,7 @@ json SchemaWriter::describe_number(const NumberSpec& spec) {
 
 json SchemaWriter::describe_vector(const NumberSpec& spec) {
   return {{"description", about(spec.about, spec.otherwise)},
-          {"unit", spec.unit},
+          {"x-unit", spec.unit},
           {"type", "array"},
           {"items", describe_number(spec)},
           {"minItems", kDim},
@@ -55,7 +55,7 @@ void SchemaWriter::number(std::string_view key, double& member, const NumberSpec
 
 void SchemaWriter::number(std::string_view key, std::optional<double>& /*member*/,
                           const NumberSpec& spec) {
-  json property = {{"description", about(spec.about, spec.otherwise)}, {"unit", spec.unit}};
+  json property = {{"description", about(spec.about, spec.otherwise)}, {"x-unit", spec.unit}};
   property.update(describe_number(spec));
   put(key, std::move(property), spec.need);
 }

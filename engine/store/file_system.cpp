@@ -101,11 +101,19 @@ void write_whole(FileSystem& system, int descriptor, ByteSpan bytes,
   }
 }
 
-InputFile::InputFile(const std::filesystem::path& path)
+InputFile::InputFile(const std::filesystem::path& path, Links links)
     // Without O_NONBLOCK the opening of a pipe waits for its writer.
     : path_(path),
-      descriptor_(
-          uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK); })) {
+      descriptor_(uninterrupted([&] {
+        return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK |
+                                        (links == Links::refuse ? O_NOFOLLOW : 0));
+      })) {
+  if (descriptor_.get() < 0 && errno == ELOOP && links == Links::refuse) {
+    throw StorageError(StorageFault::corrupt,
+                       fmt::format("{}: this is a symbolic link, and none is followed here; put "
+                                   "the file itself in its place",
+                                   path.string()));
+  }
   if (descriptor_.get() < 0) {
     throw system_error("cannot open", path, errno);
   }
@@ -173,8 +181,8 @@ std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
   return entries;
 }
 
-std::string read_text(const std::filesystem::path& path, std::uint64_t limit) {
-  const InputFile file(path);
+std::string read_text(const std::filesystem::path& path, std::uint64_t limit, Links links) {
+  const InputFile file(path, links);
   if (file.size() > limit) {
     throw StorageError(StorageFault::not_ours,
                        fmt::format("{}: holds {} bytes where at most {} are allowed", path.string(),

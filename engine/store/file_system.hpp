@@ -66,13 +66,16 @@ using ByteSpan = std::span<const std::byte>;
 void write_whole(FileSystem& system, int descriptor, ByteSpan bytes,
                  const std::filesystem::path& path);
 
+/// Whether a name that is a symbolic link stands for what it points to, or is refused.
+enum class Links { follow, refuse };
+
 /// A regular file opened for reading. Pipes, devices and folders are refused without waiting on
 /// them.
 class InputFile {
  public:
   /// Throws StorageError: io or unwritable when it cannot be opened, corrupt when it is no regular
-  /// file.
-  explicit InputFile(const std::filesystem::path& path);
+  /// file or a link that is refused.
+  explicit InputFile(const std::filesystem::path& path, Links links = Links::follow);
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Fills `into` from `offset` on; a file that ends before is corrupt.
   void read(std::uint64_t offset, std::span<std::byte> into) const;
@@ -97,6 +100,7 @@ class InputFile {
     const std::filesystem::path& folder);
 
 /// A whole text file. One above `limit` bytes is refused as not ours.
-[[nodiscard]] std::string read_text(const std::filesystem::path& path, std::uint64_t limit);
+[[nodiscard]] std::string read_text(const std::filesystem::path& path, std::uint64_t limit,
+                                    Links links = Links::follow);
 
 }  // namespace sluice

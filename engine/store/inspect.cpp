@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "engine/store/apart.hpp"
 #include "engine/store/checkpoint_io.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
@@ -175,15 +176,19 @@ Verdict collect(const std::filesystem::path& path, Json& facts) {
            {"series", Json::array()},
            {"data_sets", Json::array()}};
   try {
-    const InputFile file(path);
+    const InputFile file(path, Links::refuse);
     facts["bytes"] = file.size();
     const Trailer trailer = naming(path, [&] { return read_trailer(file); });
     facts["trailer"] = {{"version", trailer.version},
                         {"image_bytes", trailer.length},
                         {"xxh3_128", to_hex(trailer.hash)}};
     const Bytes image = read_verified(path);
-    naming(path, [&] { add_contents(Hdf5Reader(image), facts); });
-    naming(path, [&] { require_sound_contents(path, facts); });
+    const auto look = [&] {
+      naming(path, [&] { add_contents(Hdf5Reader(image), facts); });
+      naming(path, [&] { require_sound_contents(path, facts); });
+    };
+    require_harmless(path, look);
+    look();
     return Verdict::whole;
   } catch (const StorageError& error) {
     facts["problem"] = error.what();

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <system_error>
 
+#include "engine/store/apart.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/publish.hpp"
@@ -291,7 +292,8 @@ std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectat
   std::vector<std::string> rejected;
   for (const fs::path& path : paths_.checkpoints()) {
     try {
-      Checkpoint checkpoint = read_checkpoint(path, expectation);
+      Checkpoint checkpoint =
+          read_harmless(path, [&] { return read_checkpoint(path, expectation); });
       if (checkpoint.solver.step != step_of(path)) {
         throw StorageError(StorageFault::corrupt,
                            fmt::format("{}: holds step {}", path.string(), checkpoint.solver.step));

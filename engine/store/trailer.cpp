@@ -116,7 +116,7 @@ Trailer read_trailer(const InputFile& file) {
 }
 
 Bytes read_verified(const std::filesystem::path& path) {
-  const InputFile file(path);
+  const InputFile file(path, Links::refuse);
   return naming(path, [&] {
     const Trailer trailer = read_trailer(file);
     Bytes image(static_cast<std::size_t>(trailer.length));
@@ -127,7 +127,7 @@ Bytes read_verified(const std::filesystem::path& path) {
 }
 
 void verify(const std::filesystem::path& path) {
-  const InputFile file(path);
+  const InputFile file(path, Links::refuse);
   naming(path, [&] {
     const Trailer trailer = read_trailer(file);
     require_same(hash_file(file, trailer.length), trailer);

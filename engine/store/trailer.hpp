@@ -39,8 +39,8 @@ struct Trailer {
 /// is missing, altered or does not fit the file's length; unsupported_version.
 [[nodiscard]] Trailer read_trailer(const InputFile& file);
 
-/// The image of a published file after its trailer was found right. Throws StorageError with the
-/// path: corrupt, unsupported_version, io.
+/// The image of a published file after its trailer was found right. A link is none. Throws
+/// StorageError with the path: corrupt, unsupported_version, io.
 [[nodiscard]] Bytes read_verified(const std::filesystem::path& path);
 
 /// The same check without keeping the image; holds 1 MiB at a time.

@@ -7,6 +7,7 @@
 
 #include "engine/scene/json_text.hpp"
 #include "engine/scene/parse.hpp"
+#include "engine/store/apart.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 #include "engine/store/filter.hpp"
@@ -121,14 +122,8 @@ const Reference* experiment_of(const Scene& scene) {
 }
 
 std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
-  if (scene.sensors.empty()) return {};
-  if (!is_present(paths.series())) {
-    throw StorageError(StorageFault::io,
-                       fmt::format("{}: the run has written no series yet: report when it has run "
-                                   "for a second",
-                                   paths.series().string()));
-  }
-  return read_series(paths.series());
+  if (scene.sensors.empty() || !is_present(paths.series())) return {};
+  return read_harmless(paths.series(), [&] { return read_series(paths.series()); });
 }
 
 }  // namespace
@@ -157,7 +152,7 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
 nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
   const JobPaths paths(folder);
   if (!is_present(paths.outcome())) return nullptr;
-  const std::string text = read_text(paths.outcome(), kMaxTextBytes);
+  const std::string text = read_text(paths.outcome(), kMaxTextBytes, Links::refuse);
   try {
     return read_stored_json(text);
   } catch (const std::runtime_error&) {
@@ -166,7 +161,8 @@ nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
 }
 
 Scene read_job_scene(const std::filesystem::path& folder) {
-  ParseResult parsed = parse_job_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes));
+  ParseResult parsed = parse_job_scene(
+      read_text(JobPaths(folder).scene(), kMaxTextBytes, Links::refuse));
   if (!parsed.scene) throw SceneError(parsed.problems.front());
   return *std::move(parsed.scene);
 }

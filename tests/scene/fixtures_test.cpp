@@ -89,7 +89,7 @@ TEST(SceneSchema, DescribesEveryKeyAndGivesEveryNumberAUnitAndARange) {
         allowed != property.end() && allowed->is_string() ? allowed->get<std::string>() : "";
     if (type != "number" && type != "integer") return;
     ++numbers;
-    EXPECT_TRUE(property.contains("unit")) << pointer;
+    EXPECT_TRUE(property.contains("x-unit")) << pointer;
     EXPECT_TRUE(property.contains("maximum")) << pointer;
     EXPECT_TRUE(property.contains("minimum") || property.contains("exclusiveMinimum")) << pointer;
   };

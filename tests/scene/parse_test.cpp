@@ -91,6 +91,15 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
   EXPECT_EQ(s.end_time, 1);
 }
 
+TEST(ParseScene, RefusesWhatFollowsAZeroByte) {
+  for (const std::string_view tail : {std::string_view("\0", 1), std::string_view("\0{]", 3)}) {
+    const ParseResult result = parse_scene("{}" + std::string(tail));
+    EXPECT_FALSE(result.scene);
+    ASSERT_EQ(result.problems.size(), 1U);
+    EXPECT_NE(result.problems[0].message.find("byte 2 is NUL"), std::string::npos);
+  }
+}
+
 TEST(ParseScene, LeavesOutWhatHasNoKey) {
   const Scene s = parsed(base_scene());
   EXPECT_FALSE(s.method.lifted_wall);

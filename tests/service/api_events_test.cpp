@@ -65,6 +65,19 @@ TEST(ApiEvents, SendsProgressWithoutANumber) {
   EXPECT_EQ(chunk, "event: progress\ndata: {\"step\":42}\n\n");
 }
 
+TEST(ApiEvents, ProgressNeverFollowsTheEnd) {
+  Service service;
+  const std::string id = service.submit_in(JobState::running);
+  const Response response = service.get("/v1/jobs/" + id + "/events");
+  std::string chunk;
+  ASSERT_TRUE(response.stream(chunk));
+  const Job job = service.store.find(id).value();
+  service.store.record_progress(id, job.token, R"({"event":"progress","step":42})");
+  (void)service.store.apply(id, JobAction::complete, job.token, {});
+  EXPECT_EQ(names_in("\n" + read_all(response)),
+            (std::vector<std::string>{"progress", "completed"}));
+}
+
 TEST(ApiEvents, RefusesMoreStreamsThanThereArePlacesAndFreesThem) {
   Service service;
   const std::string target = "/v1/jobs/" + service.submit() + "/events";

@@ -1,3 +1,4 @@
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <mutex>
@@ -70,6 +71,28 @@ TEST(ApiJobs, LongPollReturnsWhenTheJobChanges) {
   const Response response = service.get("/v1/jobs/" + id + "?wait=60");
   other.join();
   EXPECT_EQ(body_of(response)["state"], "paused");
+}
+
+TEST(ApiJobs, LongPollReturnsForProgressOnlyWhenAsked) {
+  Service service;
+  const std::string id = service.submit_in(JobState::running);
+  const Job job = service.store.find(id).value();
+  std::atomic<bool> over = false;
+  std::thread worker([&] {
+    for (int step = 1; !over; ++step) {
+      service.store.record_progress(id, job.token, R"({"step":)" + std::to_string(step) + "}");
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+  EXPECT_EQ(body_of(service.get("/v1/jobs/" + id + "?wait=60&progress=1"))["state"], "running");
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    (void)service.store.apply(id, JobAction::cancel, "", {});
+  });
+  EXPECT_EQ(body_of(service.get("/v1/jobs/" + id + "?wait=60"))["stop_requested"], "cancel");
+  over = true;
+  worker.join();
+  other.join();
 }
 
 TEST(ApiJobs, LongPollReturnsAfterItsTimeWithoutNews) {
@@ -233,7 +256,7 @@ TEST(ApiJobs, TellsTheMethodsOfAPath) {
   EXPECT_EQ(service.ask("HEAD", job).status, 200);
   expect_problem(service.get("/v1/job"), 404, "not-found");
   expect_problem(service.ask("OPTIONS", "/v1/job"), 404, "not-found");
-  expect_problem(service.get(job + "/"), 404, "not-found");
+  expect_problem(service.get(job + "//"), 404, "not-found");
 }
 
 }  // namespace

@@ -1,6 +1,16 @@
+#include <atomic>
 #include <cmath>
+#include <csignal>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <random>
+#include <thread>
 
+#include "engine/store/errors.hpp"
+#include "engine/store/trailer.hpp"
+#include "service/answer_maker.hpp"
+#include "service/problem.hpp"
 #include "tests/service/api_support.hpp"
 
 namespace sluice::test {
@@ -60,6 +70,89 @@ TEST(ApiSensors, GivesTheSameAsCsvWhenAskedEitherWay) {
   EXPECT_EQ(service.ask("GET", target, "", {{"accept", "text/csv"}}).body, expected);
   EXPECT_EQ(service.ask("GET", target, "", {{"accept", "*/*"}}).content_type, "application/json");
   expect_problem(service.ask("GET", target, "", {{"accept", "image/png"}}), 406, "not-acceptable");
+}
+
+/// Bytes of this process's memory that were in use at most since the last call.
+double peak_mebibytes() {
+  std::ifstream status("/proc/self/status");
+  double kibibytes = 0.0;
+  for (std::string word; status >> word;) {
+    if (word == "VmHWM:") status >> kibibytes;
+  }
+  std::ofstream("/proc/self/clear_refs") << "5";
+  return kibibytes / 1024.0;
+}
+
+TEST(ApiSensors, ManyWhoAskForALongSeriesAtOnceCostLittleMemory) {
+  Service service;
+  const std::string id = service.submit();
+  service.write_samples(id, pressure_series(std::vector<double>(400'000, 5.0)));
+  ASSERT_GT(std::filesystem::file_size(service.data.job(id) / "series.h5"), 10'000'000U);
+  const std::string target = "/v1/jobs/" + id + "/sensors/P1?max_points=10";
+  (void)peak_mebibytes();
+  const double before = peak_mebibytes();
+  std::atomic<int> whole = 0;
+  std::atomic<int> later = 0;
+  std::vector<std::thread> clients;
+  for (int n = 0; n < 64; ++n) {
+    clients.emplace_back([&] {
+      const Response response = service.get(target);
+      if (response.status == 200) ++whole;
+      if (response.status == 503 && !header_of(response, "Retry-After").empty()) ++later;
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  EXPECT_GT(whole, 0);
+  EXPECT_EQ(whole + later, 64);
+  EXPECT_LT(peak_mebibytes() - before, 64.0) << "each alone would take half of that";
+}
+
+TEST(ApiSensors, ADamagedFileHurtsNobodyAndIsReadOnce) {
+  Service service;
+  const std::string id = service.submit();
+  const auto path = service.data.job(id) / "series.h5";
+  service.write_samples(id, pressure_series({1.0, 2.0}));
+  std::ifstream file(path, std::ios::binary);
+  const std::string good((std::istreambuf_iterator<char>(file)), {});
+  std::mt19937_64 random(7);
+  for (int n = 0; n < 60; ++n) {
+    std::string image = good.substr(0, good.size() - Trailer::kSize);
+    image[random() % image.size()] ^= static_cast<char>(1 << (random() % 8));
+    const auto trailer = make_trailer(std::as_bytes(std::span(image))).encode();
+    image.append(reinterpret_cast<const char*>(trailer.data()), trailer.size());
+    write_file(path, image);
+    for (const char* const name : {"", "/P1"}) {
+      const int status = service.get("/v1/jobs/" + id + "/sensors" + name).status;
+      EXPECT_TRUE(status == 200 || status == 409 || status == 500) << status;
+    }
+  }
+}
+
+TEST(AnswerMaker, KnowsAFileThatWasNotSurvived) {
+  const DataFolder data;
+  write_file(data.path() / "file", "anything");
+  AnswerMaker maker;
+  const auto die = [] {
+    ::raise(SIGSEGV);
+    return std::string();
+  };
+  EXPECT_THROW((void)maker.from_file(data.path() / "file", die), StorageError);
+  EXPECT_THROW((void)maker.from_file(data.path() / "file", [] { return std::string("good"); }),
+               StorageError);
+  write_file(data.path() / "other", "anything");
+  EXPECT_EQ(maker.from_file(data.path() / "other", [] { return std::string("good"); }), "good");
+}
+
+TEST(AnswerMaker, RefusesWhatItHasNoMemoryFor) {
+  const DataFolder data;
+  write_file(data.path() / "file", "anything");
+  AnswerMaker maker({1, 1 << 20, 0.0});
+  const std::string answer = maker.from_file(data.path() / "file", [] { return std::string("x"); });
+  EXPECT_EQ(answer, "x") << "alone it may take all";
+  EXPECT_THROW((void)maker.from_file(
+                   data.path() / "file",
+                   []() -> std::string { throw ApiError(ProblemType::no_samples_yet, "none"); }),
+               ApiError);
 }
 
 TEST(ApiSensors, MarksWhatAFilterMayStillChangeUntilTheJobHasCompleted) {

@@ -27,7 +27,7 @@ Request request(std::string_view method, std::string_view target, std::string_vi
 Service::Service(const ServiceLimits& limits)
     : store(data.path()),
       scheduler(store, data.path(), limits),
-      api(store, scheduler, data.path()) {
+      api(store, scheduler, data.path(), SLUICE_PROGRAM) {
   scheduler.drain();
 }
 
@@ -52,7 +52,11 @@ std::string Service::submit_in(JobState state) {
   if (state == JobState::completed) {
     return store.apply(id, JobAction::complete, running.token, {}).id;
   }
-  if (state == JobState::failed) return store.apply(id, JobAction::fail, running.token, {}).id;
+  if (state == JobState::failed) {
+    JobChange change;
+    change.reason = "it broke";
+    return store.apply(id, JobAction::fail, running.token, change).id;
+  }
   return id;
 }
 

@@ -198,6 +198,19 @@ def attack_reading_slowly(server, job, seconds):
     return [200]
 
 
+def attack_never_reading(server, _, seconds):
+    """400 connections, each with six requests for 100 kB."""
+    connections = []
+    for _ in range(400):
+        connection = connect(server)
+        connection.sendall(6 * b"GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        connections.append(connection)
+    time.sleep(seconds)
+    for connection in connections:
+        connection.close()
+    return [200]
+
+
 def attack_without_body(server, _, seconds):
     return repeat(lambda: pour(server, HEAD + b"\r\n", b"", 0), seconds)
 
@@ -283,6 +296,7 @@ ATTACKS = (
      lambda found: found.count(200) <= 16 and found.count(503) >= 48),
     ("64 long polls", attack_waits, refused_with(200)),
     ("64 that do not read", attack_reading_slowly, refused_with(200)),
+    ("400 that never read", attack_never_reading, refused_with(200)),
     ("POST without a body", attack_without_body, refused_with(422)),
     ("JSON 32 000 deep", attack_deep_json, refused_with(422)),
     ("JSON 200 000 deep", attack_deeper_json, refused_with(413)),

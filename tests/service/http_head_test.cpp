@@ -61,12 +61,38 @@ TEST(HttpHead, RefusesWhatTwoReadersCouldReadDifferently) {
   EXPECT_EQ(refusal_of("GET / HTTP/1.1\r\n\r\n"), ProblemType::bad_request) << "no Host";
 }
 
+TEST(HttpHead, ReadsTheFormsOfATargetThatRfc9112Names) {
+  const RequestHead whole =
+      head_of("GET HTTP://evil.example:81/v1/jobs?limit=2 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(whole.request.path, "/v1/jobs");
+  EXPECT_EQ(whole.request.query.size(), 1U);
+  EXPECT_EQ(whole.request.header("host"), "evil.example:81") << "the target's counts";
+  EXPECT_EQ(head_of("GET https://h HTTP/1.1\r\nHost: h\r\n\r\n").request.path, "/");
+  EXPECT_EQ(head_of("OPTIONS * HTTP/1.1\r\nHost: h\r\n\r\n").request.path, "*");
+}
+
 TEST(HttpHead, RefusesRequestLinesThatAreNone) {
-  for (const char* const line :
-       {"GET /", "GET", "", "GET  HTTP/1.1", "GET / HTTP/2.0", "GET / HTTP/1.1 ", "G@T / HTTP/1.1",
-        "GET http://h/ HTTP/1.1", "GET * HTTP/1.1", "GET /a b HTTP/1.1", "GET /\x80 HTTP/1.1",
-        "GET /%zz HTTP/1.1", "GET /%2 HTTP/1.1", "GET /%00 HTTP/1.1", "GET /?a=%0 HTTP/1.1",
-        "AVERYLONGMETHODTHATISNONE / HTTP/1.1"}) {
+  for (const char* const line : {"GET /",
+                                 "GET",
+                                 "",
+                                 "GET  HTTP/1.1",
+                                 "GET / HTTP/2.0",
+                                 "GET / HTTP/1.1 ",
+                                 "G@T / HTTP/1.1",
+                                 "GET ftp://h/ HTTP/1.1",
+                                 "GET http:///a HTTP/1.1",
+                                 "GET http://me@h/ HTTP/1.1",
+                                 "GET http://h?a=1 HTTP/1.1",
+                                 "GET http:/a HTTP/1.1",
+                                 "GET * HTTP/1.1",
+                                 "OPTIONS *a HTTP/1.1",
+                                 "GET /a b HTTP/1.1",
+                                 "GET /\x80 HTTP/1.1",
+                                 "GET /%zz HTTP/1.1",
+                                 "GET /%2 HTTP/1.1",
+                                 "GET /%00 HTTP/1.1",
+                                 "GET /?a=%0 HTTP/1.1",
+                                 "AVERYLONGMETHODTHATISNONE / HTTP/1.1"}) {
     EXPECT_EQ(refusal_of(std::string(line) + "\r\nHost: h\r\n\r\n"), ProblemType::bad_request)
         << line;
   }

@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -21,6 +25,7 @@ Response echo(const Request& request) {
   Response response;
   response.content_type = "text/plain";
   response.body = request.method + " " + request.path + " " + request.body;
+  if (request.path == "/medium") response.body.assign(5'000, 'x');
   if (request.path == "/long") response.body.assign(100'000, 'x');
   if (request.path == "/huge") response.body.assign(12U << 20U, 'x');
   if (request.path == "/gone") response.file = "/nonexistent/file";
@@ -81,6 +86,16 @@ TEST(HttpServerThreads, AnswersManyRequestsOnOneConnection) {
     ASSERT_EQ(status_of(answer), 200);
     ASSERT_EQ(text_of(answer), "POST / " + body);
   }
+}
+
+TEST(HttpServerThreads, SaysWhenItAnswered) {
+  Server server;
+  const std::string answer = server.ask(get("/"));
+  const std::size_t at = answer.find("\r\nDate: ");
+  ASSERT_NE(at, answer.npos) << answer;
+  std::tm utc{};
+  std::istringstream(answer.substr(at + 8, 29)) >> std::get_time(&utc, "%a, %d %b %Y %H:%M:%S GMT");
+  EXPECT_NEAR(static_cast<double>(::timegm(&utc)), static_cast<double>(std::time(nullptr)), 60.0);
 }
 
 TEST(HttpServerThreads, AnswersPipelinedRequestsInOrder) {
@@ -194,6 +209,101 @@ TEST(HttpServerThreads, GivesUpOnClientsThatDoNotTakeTheirAnswer) {
   client.send(get("/huge"));
   wait_until("the server to give up", [&] { return !server.seen().empty(); });
   EXPECT_FALSE(server.seen().front().whole);
+}
+
+TEST(HttpServerThreads, ClientsThatNeverReadHoldNobody) {
+  HttpOptions options = quick_options();  // 4 threads
+  options.stall_seconds = 600;
+  Server server(options);
+  std::vector<std::unique_ptr<RawClient>> stalled;
+  std::string many;
+  for (int n = 0; n < 40; ++n) many += get("/long");
+  for (int n = 0; n < 40; ++n) {
+    stalled.push_back(std::make_unique<RawClient>(server.http.port()));
+    stalled.back()->take_little();
+    stalled.back()->send(many);
+  }
+  for (int n = 0; n < 20; ++n) EXPECT_EQ(text_of(server.ask(get("/alive"))), "GET /alive ");
+  EXPECT_EQ(text_of(server.ask(get("/long"))).size(), 100'000U);
+}
+
+TEST(HttpServerThreads, AnAnswerThatIsTakenLateIsWhole) {
+  constexpr int kMany = 120;
+  HttpOptions options = quick_options();
+  options.stall_seconds = 600;
+  Server server(options);
+  RawClient client(server.http.port());
+  // More than both ends' buffers take.
+  for (int n = 0; n < kMany; ++n) client.send(get("/long"));
+  client.send(get("/last", "Connection: close\r\n"));
+  (void)server.ask(get("/alive"));
+  for (int n = 0; n < kMany; ++n) ASSERT_EQ(text_of(client.answer()), std::string(100'000, 'x'));
+  EXPECT_EQ(text_of(client.answer()), "GET /last ");
+  EXPECT_EQ(client.rest(), "");
+  for (const AccessRecord& record : server.seen()) EXPECT_TRUE(record.whole);
+}
+
+TEST(HttpServerThreads, WhatClientsDoNotTakeIsBoundedInTimeAndMemory) {
+  HttpOptions options = quick_options();
+  std::string many;
+  for (int n = 0; n < 300; ++n) many += get("/medium");
+  const auto cut = [&](Server& server) {
+    return std::ranges::any_of(server.seen(), [](const AccessRecord& one) { return !one.whole; });
+  };
+  {
+    Server server(options);
+    RawClient client(server.http.port());
+    client.take_little();
+    client.send(many);
+    wait_until("the client to be cut off", [&] { return cut(server); });
+  }
+  options.stall_seconds = 600;
+  options.unsent_bytes = 12'000;  // of two clients
+  Server server(options);
+  std::vector<std::unique_ptr<RawClient>> stalled;
+  for (int n = 0; n < 8; ++n) {
+    stalled.push_back(std::make_unique<RawClient>(server.http.port()));
+    stalled.back()->take_little();
+    stalled.back()->send(many);
+  }
+  wait_until("one to make room", [&] { return cut(server); });
+}
+
+TEST(HttpServerThreads, HealthIsAnsweredWhenAllThreadsAreTaken) {
+  std::atomic<bool> release = false;
+  std::atomic<int> held = 0;
+  Server server(quick_options(), [&](const Request& request) {
+    if (request.path == "/hold") {
+      ++held;
+      while (!release) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return echo(request);
+  });
+  std::vector<std::unique_ptr<RawClient>> holding;
+  for (int n = 0; n < 8; ++n) {
+    holding.push_back(std::make_unique<RawClient>(server.http.port()));
+    holding.back()->send(get("/hold"));
+  }
+  wait_until("all threads to be taken", [&] { return held == 4; });
+  for (const char* const path : {"/livez", "/readyz"}) {
+    EXPECT_EQ(status_of(server.ask(get(path))), 200) << path;
+  }
+  release = true;
+}
+
+TEST(HttpServerThreads, ALongAnswerThatStallsMakesRoomForAnother) {
+  HttpOptions options = quick_options();
+  options.large_answers = 2;
+  options.stall_seconds = 600;
+  Server server(options);
+  std::vector<std::unique_ptr<RawClient>> stalled;
+  for (int n = 0; n < 2; ++n) {
+    stalled.push_back(std::make_unique<RawClient>(server.http.port()));
+    stalled.back()->take_little();
+    stalled.back()->send(get("/huge"));
+    (void)stalled.back()->until("200 OK");
+  }
+  wait_until("a place", [&] { return status_of(server.ask(get("/huge"))) == 200; });
 }
 
 TEST(HttpServerThreads, LimitsLargeAnswersSoThatShortOnesHaveThreads) {

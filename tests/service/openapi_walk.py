@@ -109,6 +109,24 @@ class Walk:
                         yield f"{operation['operationId']} {status} {slug}"
 
 
+def broken_references(node, document, files):
+    """The references that lead nowhere in the file itself and those beside it."""
+    if isinstance(node, dict):
+        reference = node.get("$ref")
+        if isinstance(reference, str):
+            file, _, pointer = reference.partition("#")
+            target = files.get(file) if file else document
+            for part in pointer.split("/")[1:]:
+                part = part.replace("~1", "/").replace("~0", "~")
+                target = target.get(part) if isinstance(target, dict) else None
+            if target is None:
+                yield reference
+        node = list(node.values())
+    if isinstance(node, list):
+        for part in node:
+            yield from broken_references(part, document, files)
+
+
 def raw(server, text, linger=b""):
     """Sends bytes as they are and reads one answer."""
     with socket.create_connection(("127.0.0.1", server.port), 60) as connection:
@@ -332,21 +350,28 @@ def main():
     schemas = {}
     for name in ("scene", "study"):
         with open(os.path.join(root, f"schemas/{name}.schema.json"), encoding="utf-8") as stream:
-            schemas[f"/v1/schemas/{name}"] = json.load(stream)
+            schemas[f"{name}.schema.json"] = json.load(stream)
+    broken = list(broken_references(document, document, schemas))
+    assert not broken, broken
     walk = Walk(document, schemas)
     for path, method, operation in walk.operations():
         body = operation.get("requestBody", {}).get("content", {}).get("application/json", {})
         if path == "/v1/jobs" and method == "post":
-            walk.validate({"$ref": "/v1/schemas/scene"}, body["example"])
+            walk.validate({"$ref": "scene.schema.json"}, body["example"])
         if path == "/v1/studies" and method == "post":
-            walk.validate({"$ref": "/v1/schemas/study"}, body["example"])
+            walk.validate({"$ref": "study.schema.json"}, body["example"])
 
     with Server(program, "--cores", "1", "--max-queued", "3", "--max-particles", "100000",
                 "--max-disk", "100000000", "--disk-reserve", "0") as server:
         token = os.path.join(server.scratch.name, "token")
         with open(os.open(token, os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as out:
             out.write(32 * "t")
-        assert server.ask("GET", "/openapi.json").json() == document
+        served = server.ask("GET", "/openapi.json").body.decode()
+        for name in ("scene", "study"):
+            assert server.ask("GET", f"/v1/schemas/{name}").json() == schemas[f"{name}.schema.json"]
+            served = served.replace(f'"/v1/schemas/{name}"', f'"{name}.schema.json"')
+        # Only how it names the schemas differs, and in descriptions no path of theirs stands alone.
+        assert json.loads(served) == document
         done = server.submit(scene(12.0, interval=0, scales={"height": 0.3, "width": 0.6}))
         with Server(program, "--token-file", token) as guarded:
             walk_every_operation(walk, server, guarded, done)

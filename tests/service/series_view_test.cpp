@@ -29,15 +29,26 @@ TEST(SeriesView, DecimationKeepsTheExtremesOfEveryPart) {
   values[1234] = 1e6;
   values[8765] = -1e6;
   const Series all = pressure_series(values);
-  const Series few = decimate(all, 300);
-  EXPECT_LE(few.size(), 300U);
+  const Series few = decimate(all, 302);
+  EXPECT_LE(few.size(), 302U);
   EXPECT_TRUE(std::ranges::is_sorted(few.time));
-  const std::size_t parts = 100;  // three samples of each
+  const std::size_t parts = 100;  // three samples of each, beside the first and the last
   for (std::size_t part = 0; part < parts; ++part) {
     const auto first = values.begin() + static_cast<std::ptrdiff_t>(part * 100);
     const auto [least, greatest] = std::minmax_element(first, first + 100);
     EXPECT_NE(std::ranges::find(few.values, *least), few.values.end());
     EXPECT_NE(std::ranges::find(few.values, *greatest), few.values.end());
+  }
+}
+
+TEST(SeriesView, DecimationKeepsWhereASeriesBeginsAndEnds) {
+  const Series all = pressure_series(noise(1000));
+  for (const std::size_t most : {10U, 11U, 12U, 50U, 999U}) {
+    const Series few = decimate(all, most);
+    EXPECT_LE(few.size(), most);
+    EXPECT_EQ(few.time.front(), all.time.front()) << most;
+    EXPECT_EQ(few.time.back(), all.time.back()) << most;
+    EXPECT_EQ(few.values.back(), all.values.back()) << most;
   }
 }
 

@@ -13,6 +13,17 @@ Table small() {
   return table;
 }
 
+TEST(Table, CsvGivesASpreadsheetNothingToCompute) {
+  for (const char* const text :
+       {"=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1"}) {
+    EXPECT_EQ(csv_field(text), "\"'" + std::string(text) + "\"");
+  }
+  EXPECT_EQ(csv_field("=\"a\""), "\"'=\"\"a\"\"\"");
+  for (const char* const text : {"-1.5", "-3e-05", "a=b", "x", ""})
+    EXPECT_EQ(csv_field(text), text);
+  EXPECT_EQ(csv_field("a;=1"), "\"a;=1\"") << "a semicolon parts cells, too";
+}
+
 TEST(Table, SetsNumbersToTheRightAndNamesToTheLeft) {
   EXPECT_EQ(table_text(small()),
             "Small\nname       value\na            1.5\nlong, \"b\"      -\nc          22.25\n\n");
