@@ -36,29 +36,45 @@ Plot plot_of(const Box& view) {
   return {view, std::min((kWidth - kLeft - kRight) / size.x(), kTallest / size.y())};
 }
 
+/// What the numbers of an axis are counted from: whole metres where it lies so far from zero that
+/// its numbers would differ in their last digits only.
+double base_of(double low, double high) {
+  return std::max(std::abs(low), std::abs(high)) > 1000.0 * (high - low) ? std::floor(low) : 0.0;
+}
+
+std::string label_of(std::string_view name, double base) {
+  return base == 0.0
+             ? fmt::format("{}, m", name)
+             : fmt::format("{} {} {:.17g} m, m", name, base > 0.0 ? "-" : "+", std::abs(base));
+}
+
 std::string axes(const Plot& plot) {
   std::string text;
-  const Axis x{"", plot.view.min.x(), plot.view.max.x()};
-  const Axis y{"", plot.view.min.y(), plot.view.max.y()};
+  const Vec base(base_of(plot.view.min.x(), plot.view.max.x()),
+                 base_of(plot.view.min.y(), plot.view.max.y()));
+  const Axis x{label_of("x", base.x()), plot.view.min.x() - base.x(), plot.view.max.x() - base.x()};
+  const Axis y{label_of("y", base.y()), plot.view.min.y() - base.y(), plot.view.max.y() - base.y()};
   const double bottom = kTop + plot.height();
   // As many as there is room for.
   for (const double place : ticks(x, std::clamp(static_cast<int>(plot.width() / 60.0), 1, 8))) {
     text += fmt::format(
         "<path class=\"frame\" d=\"M{0:.1f} {1:.1f}v5\"/><text x=\"{0:.1f}\" y=\"{2:.1f}\" "
         "text-anchor=\"middle\">{3}</text>\n",
-        plot.x(place), bottom, bottom + 19.0, tick_text(place));
+        plot.x(base.x() + place), bottom, bottom + 19.0, tick_text(place));
   }
   for (const double place : ticks(y, std::clamp(static_cast<int>(plot.height() / 40.0), 1, 5))) {
     text += fmt::format(
         "<path class=\"frame\" d=\"M{0} {1:.1f}h-5\"/><text x=\"{2}\" y=\"{3:.1f}\" "
         "text-anchor=\"end\">{4}</text>\n",
-        kLeft, plot.y(place), kLeft - 8.0, plot.y(place) + 4.5, tick_text(place));
+        kLeft, plot.y(base.y() + place), kLeft - 8.0, plot.y(base.y() + place) + 4.5,
+        tick_text(place));
   }
   return text + fmt::format(
-                    "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">x, m</text>\n"
+                    "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
                     "<text transform=\"translate(14 {:.1f}) rotate(-90)\" "
-                    "text-anchor=\"middle\">y, m</text>\n",
-                    kLeft + 0.5 * plot.width(), bottom + 40.0, kTop + 0.5 * plot.height());
+                    "text-anchor=\"middle\">{}</text>\n",
+                    kLeft + 0.5 * plot.width(), bottom + 40.0, x.label, kTop + 0.5 * plot.height(),
+                    y.label);
 }
 
 /// The scale of colours above the picture's right end, in `unit` Pa or m/s.

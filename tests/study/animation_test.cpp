@@ -11,6 +11,7 @@
 
 #include "engine/scene/canonical.hpp"
 #include "engine/scene/parse.hpp"
+#include "engine/study/figures.hpp"
 #include "engine/study/png.hpp"
 #include "engine/study/snapshots.hpp"
 
@@ -138,6 +139,23 @@ TEST(Picture, DrawsWallsAndObstaclesGreyAndTheGateAsFarAsItIsStillThere) {
   picture = draw_solids(scene, how);
   draw_gate(picture, scene, how, 0.5);
   EXPECT_EQ(at(0.31, 0.39), kNothing);
+}
+
+TEST(Picture, FarFromZeroCountsItsAxisFromWholeMetres) {
+  Scene scene = test_scene();
+  scene.tank.reset();
+  scene.gate.reset();
+  scene.obstacles.clear();
+  Frame frame;
+  frame.origin_x = 1e5;
+  frame.x = {0.0F, 0.6F};
+  frame.y = {0.0F, 0.3F};
+  frame.vx = frame.vy = frame.pressure = {0.0F, 0.0F};
+  frame.id = {0, 1};
+  const std::string svg = picture_svgs(report_of(scene), {frame}).at(0);
+  EXPECT_NE(svg.find(">x - 99999 m, m<"), std::string::npos);
+  EXPECT_NE(svg.find(">y, m<"), std::string::npos);
+  EXPECT_EQ(svg.find(">1e5<"), std::string::npos);
 }
 
 std::vector<std::string> names_of(const std::vector<fs::path>& paths) {
