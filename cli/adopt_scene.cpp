@@ -93,7 +93,7 @@ void adopt_scene(JobFolder& folder, const std::string& text, const Scene& scene)
         ExitCode::invalid_scene,
         fmt::format("{} holds a run of another scene: {}; choose another folder with "
                     "--folder, or remove that one",
-                    folder.name().string(), differences({present_text, present}, {text, scene})));
+                    folder.name().string(), differences({present_text, present, {}}, {text, scene, {}})));
   }
   if (canonical_text(present) != canonical_text(scene)) folder.publish_text(path, text);
 }

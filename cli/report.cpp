@@ -49,7 +49,7 @@ std::string formatted(const ReportArguments& arguments, const std::filesystem::p
     case ReportFormat::html:
       return report_html(report, job.series, picture_frames(folder, report));
     case ReportFormat::apng:
-      if (std::string moving = animation_png(folder, report, colour); !moving.empty()) {
+      if (std::string moving = animation_png(folder, report, arguments.colour); !moving.empty()) {
         return moving;
       }
       throw CommandEnd(ExitCode::usage,

@@ -13,11 +13,9 @@
 #include "cli/run_end.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
-#include "engine/run/insist.hpp"
 #include "engine/run/reporter.hpp"
 #include "engine/run/run_loop.hpp"
 #include "engine/run/signals.hpp"
-#include "engine/store/file_system.hpp"
 #include "engine/store/job_folder.hpp"
 
 namespace sluice {
@@ -133,16 +131,6 @@ void run(const RunArguments& arguments) {
   if (outcome.exit_code == ExitCode::done) return;
   const bool stopped = outcome.exit_code == ExitCode::checkpointed;
   throw CommandEnd(outcome.exit_code, stopped ? "" : outcome.reason);
-}
-
-/// What the system cannot look at is a storage failure, not missing: to a service that tells them
-/// apart, a job whose folder is missing has failed.
-CLI::Validator existing_path() {
-  return {[](const std::string& text) {
-            return is_present(text) ? std::string()
-                                    : fmt::format("there is no file or folder {}", text);
-          },
-          "PATH"};
 }
 
 void add_test_options(CLI::App& verb, RunArguments& arguments) {

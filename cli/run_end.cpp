@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/shell_word.hpp"
+#include "engine/run/insist.hpp"
 #include "engine/store/file_system.hpp"
 #include "engine/study/report.hpp"
 
@@ -80,11 +81,18 @@ std::string next_commands(const JobFolder& folder, const Scene& scene, const Out
   return text;
 }
 
-void leave_report(const JobFolder& folder, const Outcome& outcome) {
+void leave_report(const JobFolder& folder, const Outcome& outcome, double patience) {
   if (outcome.exit_code != ExitCode::done) return;
   try {
     folder.require_held();
-    publish_report(folder.paths().root(), folder.paths().root());
+    insist(
+        patience, [&] { publish_report(folder.paths().root(), folder.paths().root()); },
+        [](const StorageError& error, double wait) {
+          std::fputs(fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait,
+                                 error.what())
+                         .c_str(),
+                     stderr);
+        });
   } catch (const std::exception& error) {
     std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n", error.what(),
                            shell_path(folder.name()))

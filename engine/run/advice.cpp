@@ -33,7 +33,7 @@ void add_smaller_courant(const Method& method, Steps& steps) {
   const double limit = analyse_scheme(method)->limits().scheme;
   if (limit <= 0.0 || method.courant <= limit) return;
   steps.push_back(fmt::format("lower numerics.courant from {:g} to {:g}, what these terms allow",
-                              method.courant, rounded_down(kDisorderShare * limit)));
+                              method.courant, rounded_down(disorder_share(method) * limit)));
 }
 
 void add_missing_terms(const Method& method, Steps& steps) {
