@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -111,6 +112,8 @@ void open_standard_descriptors() {
 
 int main(int argc, char** argv) {
   sluice::open_standard_descriptors();
+  // A file that grows beyond a limit (ulimit -f) is an error like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{
       "Sluice runs long dam-break simulations as jobs that can be stopped and resumed anywhere.\n"
       "Exit codes: 0 done, 2 usage, 3 invalid scene, 4 numerical failure, 5 storage failure,\n"

@@ -54,7 +54,7 @@ std::string kinds_of_excluded(const StepFacts& facts) {
 
 Finding excluded_above(std::size_t count, double share, const StepFacts& facts) {
   const auto all = static_cast<double>(facts.initial_particles);
-  Finding breach = above(static_cast<double>(count), GuardLimits::most_excluded(share, all));
+  Finding breach = above(static_cast<double>(count), GuardLimits::most_of(share, all));
   if (breach) breach->detail = kinds_of_excluded(facts);
   return breach;
 }
@@ -87,7 +87,9 @@ Finding compressed_as_a_whole(const GuardLimits& limits, const StepFacts& facts)
 }
 
 Finding too_many_escaped(const GuardLimits& limits, const StepFacts& facts) {
-  return above(share_of(leaked_in(facts), facts), limits.leaked_share);
+  const auto all = static_cast<double>(facts.initial_particles);
+  const double most = GuardLimits::most_of(limits.leaked_share, all);
+  return above(share_of(leaked_in(facts), facts), most / all);
 }
 
 Finding energy_grew(const GuardLimits& limits, const StepFacts& facts) {
@@ -160,7 +162,7 @@ GuardLimits GuardLimits::for_method(const Method& method) {
   return limits;
 }
 
-double GuardLimits::most_excluded(double share, double particles) {
+double GuardLimits::most_of(double share, double particles) {
   constexpr double kHandful = 8.0;
   return std::max(share * particles, std::min(kHandful, 0.1 * particles));
 }

@@ -68,7 +68,7 @@ class Unit(unittest.TestCase):
         self.assertNotEqual(self.exposure(opened)[0], 0)
 
     def test_gives_the_drain_more_time_than_the_service_takes_for_it(self):
-        found = re.search(r"--stop-seconds \S*=(\d+)",
+        found = re.search(r"--stop-seconds .*?=(\d+)",
                           run(PROGRAM, "serve", "--help")[1])
         self.assertTrue(found)
         self.assertGreater(self.seconds("TimeoutStopSec"), 2 * int(found.group(1)))

@@ -12,8 +12,8 @@ SCENE = {
     "name": "tiny", "tank": {"width": 0.6, "height": 0.4}, "gravity": [0, -9.81],
     "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.3, 0.2]}],
     "resolution": {"spacing": 0.04},
-    "numerics": {"integrator": "kick_drift_kick", "courant": 0.5,
-                 "density_diffusion": {"delta": 0.1}, "artificial_viscosity": {"alpha": 0.02}},
+    "numerics": {"scheme": "paper", "integrator": "kick_drift_kick", "courant": 0.5,
+                 "reinitialisation": None},
     "sensors": [{"name": "P1", "kind": "pressure", "position": [0.6, 0.02], "interval": 0.01}],
     "output": {"frames": {"interval": 0.05}}, "end_time": 0.1}
 LATER = {**SCENE, "end_time": 0.15}

@@ -97,10 +97,10 @@ TEST(Guards, StopMoreThanOneInAThousandExcludedWhileSoundCrossesTheFluid) {
 }
 
 TEST(Guards, DoNotEndASmallRunForAHandful) {
-  EXPECT_EQ(GuardLimits::most_excluded(0.005, 20000.0), 100.0);
-  EXPECT_EQ(GuardLimits::most_excluded(0.001, 400.0), 8.0);
-  EXPECT_EQ(GuardLimits::most_excluded(0.005, 40.0), 4.0);
-  EXPECT_LT(GuardLimits::most_excluded(0.005, 1.0), 1.0) << "its only particle";
+  EXPECT_EQ(GuardLimits::most_of(0.005, 20000.0), 100.0);
+  EXPECT_EQ(GuardLimits::most_of(0.001, 400.0), 8.0);
+  EXPECT_EQ(GuardLimits::most_of(0.005, 40.0), 4.0);
+  EXPECT_LT(GuardLimits::most_of(0.005, 1.0), 1.0) << "its only particle";
 }
 
 TEST(Guards, StopAFluidWhoseMeanSpeedIsHalfOfTheSoundSpeed) {

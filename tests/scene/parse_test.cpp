@@ -96,7 +96,7 @@ TEST(ParseScene, RefusesWhatFollowsAZeroByte) {
     const ParseResult result = parse_scene("{}" + std::string(tail));
     EXPECT_FALSE(result.scene);
     ASSERT_EQ(result.problems.size(), 1U);
-    EXPECT_NE(result.problems[0].message.find("byte 2 is NUL"), std::string::npos);
+    EXPECT_NE(result.problems[0].message.find("byte 3: a byte of value zero"), std::string::npos);
   }
 }
 

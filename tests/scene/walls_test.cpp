@@ -145,7 +145,7 @@ TEST(Rim, IsTheMiddleOfTheWallsHoweverThickTheyAre) {
   nlohmann::json text = testing::base_scene();
   EXPECT_DOUBLE_EQ(testing::parsed(text).method.rim_left, -1.5 * 0.05);
   text["resolution"]["smoothing_ratio"] = 1.3;  // walls of four layers
-  text["numerics"]["courant"] = 0.1;
+  text["numerics"] = {{"scheme", "paper"}, {"courant", 0.1}};
   const Method method = testing::parsed(text).method;
   ASSERT_EQ(wall_layers(method) % 2, 0);
   EXPECT_DOUBLE_EQ(method.rim_left, -0.5 * 0.05 * static_cast<double>(wall_layers(method)));

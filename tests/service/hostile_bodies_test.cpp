@@ -123,8 +123,11 @@ TEST(StoredJson, ABadFileOfAJobIsAProblemOfThatJobAlone) {
     write_file(service.data.job(id) / file, deep);
     EXPECT_EQ(service.get("/v1/jobs/" + id).status, 200);
     EXPECT_EQ(service.get("/v1/jobs").status, 200);
+    // A report is made anew from what is whole; without its scene there is none.
     const Response report = service.get("/v1/jobs/" + id + "/report");
-    EXPECT_EQ(report.content_type, "application/problem+json") << file;
+    const bool readable = file != std::string_view("scene.json");
+    EXPECT_EQ(report.content_type, readable ? "application/json" : "application/problem+json")
+        << file;
     const Response later = service.post("/v1/jobs/" + id + "/resume", R"({"end_time": 0.2})");
     EXPECT_TRUE(later.status == 200 || later.content_type == "application/problem+json") << file;
     EXPECT_EQ(service.get("/metrics").status, 200);
