@@ -89,11 +89,11 @@ void adopt_scene(JobFolder& folder, const std::string& text, const Scene& scene)
   const std::string present_text = folder.scene_text();
   const Scene present = job_scene_or_end(present_text, path);
   if (identity_text(present) != identity_text(scene)) {
-    throw CommandEnd(
-        ExitCode::invalid_scene,
-        fmt::format("{} holds a run of another scene: {}; choose another folder with "
-                    "--folder, or remove that one",
-                    folder.name().string(), differences({present_text, present, {}}, {text, scene, {}})));
+    throw CommandEnd(ExitCode::invalid_scene,
+                     fmt::format("{} holds a run of another scene: {}; choose another folder with "
+                                 "--folder, or remove that one",
+                                 folder.name().string(),
+                                 differences({present_text, present, {}}, {text, scene, {}})));
   }
   if (canonical_text(present) != canonical_text(scene)) folder.publish_text(path, text);
 }

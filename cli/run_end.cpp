@@ -88,10 +88,10 @@ void leave_report(const JobFolder& folder, const Outcome& outcome, double patien
     insist(
         patience, [&] { publish_report(folder.paths().root(), folder.paths().root()); },
         [](const StorageError& error, double wait) {
-          std::fputs(fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait,
-                                 error.what())
-                         .c_str(),
-                     stderr);
+          std::fputs(
+              fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait, error.what())
+                  .c_str(),
+              stderr);
         });
   } catch (const std::exception& error) {
     std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n", error.what(),

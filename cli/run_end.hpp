@@ -23,8 +23,8 @@ namespace sluice {
                                         const Outcome& outcome);
 
 /// Leaves the report beside the results of a complete run, for those who only read files. What goes
-/// wrong here makes no run a failure: it is tried for `patience` seconds, and `sluice report` can make
-/// it again.
+/// wrong here makes no run a failure: it is tried for `patience` seconds, and `sluice report` can
+/// make it again.
 void leave_report(const JobFolder& folder, const Outcome& outcome, double patience);
 
 }  // namespace sluice

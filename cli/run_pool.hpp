@@ -12,8 +12,9 @@ namespace sluice {
 
 /// Child processes that each run a job, `sluice run FOLDER`, this very program, in a process group
 /// of its own. While it lives, SIGTERM, SIGINT, SIGHUP (where not ignored at the start), SIGTSTP
-/// and SIGCHLD are blocked and only seen by wait(); SIGPIPE is ignored from then on. When the process dies, however it does, its
-/// runs write a checkpoint and stop; when a terminal suspends it, they rest with it.
+/// and SIGCHLD are blocked and only seen by wait(); SIGPIPE is ignored from then on. When the
+/// process dies, however it does, its runs write a checkpoint and stop; when a terminal suspends
+/// it, they rest with it.
 class RunPool {
  public:
   RunPool();

@@ -25,8 +25,7 @@ enum class Format { json, csv };
 
 Scene scene_of(const ApiContext& context, const Job& job) {
   const JobPaths paths = context.paths(job.id);
-  ParseResult result =
-      parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
+  ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
   if (result.scene) return *std::move(result.scene);
   throw ApiError(ProblemType::internal,
                  fmt::format("the scene in the folder of job {} was altered", job.id));

@@ -43,8 +43,9 @@ Table setup_table(const StudyResult& result) {
   table.note =
       "error: mean relative L2 of the reference's sensors; front: no other set-up has less "
       "error for the same or less cost";
-  const bool refined = std::any_of(result.setups.begin(), result.setups.end(),
-                                   [](const SetupResult& setup) { return setup.difference.has_value(); });
+  const bool refined =
+      std::any_of(result.setups.begin(), result.setups.end(),
+                  [](const SetupResult& setup) { return setup.difference.has_value(); });
   if (refined) {
     table.note +=
         "; from the finest: mean relative difference of plateaus, means and the like from those "

@@ -52,8 +52,8 @@ struct GuardLimits {
 
   [[nodiscard]] static GuardLimits for_method(const Method& method);
 
-  /// So many of `particles` may be excluded or leak: the share of them, in a small run eight or, in a
-  /// tiny one, a tenth of all: a handful says nothing of the fluid as a whole.
+  /// So many of `particles` may be excluded or leak: the share of them, in a small run eight or, in
+  /// a tiny one, a tenth of all: a handful says nothing of the fluid as a whole.
   [[nodiscard]] static double most_of(double share, double particles);
   /// Time that sound needs across a square of the fluid's mass, s.
   [[nodiscard]] double crossing_time(const GuardBaselines& baselines) const;

@@ -155,12 +155,10 @@ void JobWriter::account(Account& account) const {
 }
 
 void JobWriter::persist(std::string_view what, const std::function<void()>& write) {
-  insist(
-      options_.storage_patience, write,
-      [&](const StorageError& error, double wait) {
-        if (!may_pass(error)) throw error;
-        warn(what, error, wait);
-      });
+  insist(options_.storage_patience, write, [&](const StorageError& error, double wait) {
+    if (!may_pass(error)) throw error;
+    warn(what, error, wait);
+  });
 }
 
 void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {

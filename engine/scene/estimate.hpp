@@ -23,8 +23,8 @@ struct Estimate {
 
 [[nodiscard]] Estimate estimate(const Scene& scene);
 
-/// The same with the particles counted as they will be made: takes as long as filling the scene, and
-/// throws SceneError for what shows only then, such as regions that overlap.
+/// The same with the particles counted as they will be made: takes as long as filling the scene,
+/// and throws SceneError for what shows only then, such as regions that overlap.
 [[nodiscard]] Estimate exact_estimate(const Scene& scene);
 
 /// Processor time that the run takes on this machine, s: what `plan` and the service go by. The

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/scene/initial.hpp"
 #include "engine/scene/json_text.hpp"
 #include "engine/scene/numerics_json.hpp"
-#include "engine/scene/initial.hpp"
 #include "engine/scene/vocabulary.hpp"
 #include "engine/scene/work.hpp"
 #include "engine/sph/particles.hpp"

@@ -103,8 +103,7 @@ void write_whole(FileSystem& system, int descriptor, ByteSpan bytes,
 
 InputFile::InputFile(const std::filesystem::path& path, Links links)
     // Without O_NONBLOCK the opening of a pipe waits for its writer.
-    : path_(path),
-      descriptor_(uninterrupted([&] {
+    : path_(path), descriptor_(uninterrupted([&] {
         return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK |
                                         (links == Links::refuse ? O_NOFOLLOW : 0));
       })) {

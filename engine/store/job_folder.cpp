@@ -78,11 +78,18 @@ void require_plain_file(const FileDescriptor& descriptor, const fs::path& path) 
   }
 }
 
+/// Throws StorageError where the system cannot tell: that is no answer.
 bool is_still_at(int descriptor, const fs::path& path) {
   struct stat held {};
   struct stat named {};
-  return ::fstat(descriptor, &held) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+  if (::fstat(descriptor, &held) != 0) {
+    throw system_error("cannot look at", path, errno);
+  }
+  if (::lstat(path.c_str(), &named) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR) return false;
+    throw system_error("cannot look at", path, errno);
+  }
+  return held.st_dev == named.st_dev && held.st_ino == named.st_ino;
 }
 
 /// What the holder wrote into the lock file, for the message; it is not what locks.
@@ -276,8 +283,16 @@ void JobFolder::enter() {
   require_held();
 }
 
+bool JobFolder::is_held() const {
+  try {
+    return lock_.is_at(paths_.lock());
+  } catch (const StorageError&) {
+    return true;
+  }
+}
+
 void JobFolder::require_held() const {
-  if (is_held()) return;
+  if (lock_.is_at(paths_.lock())) return;
   throw StorageError(
       StorageFault::lost,
       fmt::format("{}: this folder or the lock file in it was removed or replaced while the job "

@@ -57,7 +57,8 @@ class FolderLock {
   ~FolderLock();
 
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-  /// Whether the file at `path` is the one that is locked.
+  /// Whether the file at `path` is the one that is locked. Throws StorageError when the system
+  /// cannot tell.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
 
  private:
@@ -98,9 +99,10 @@ class JobFolder {
   /// or written. Throws StorageError: lost, unwritable, io.
   void enter();
   /// Throws StorageError(lost) unless this very folder is at its paths, with the lock that is held
-  /// in it. To be asked before anything is written.
+  /// in it, or io where the system cannot tell. To be asked before anything is written.
   void require_held() const;
-  [[nodiscard]] bool is_held() const { return lock_.is_at(paths_.lock()); }
+  /// The same as an answer: true also where the system cannot tell.
+  [[nodiscard]] bool is_held() const;
 
   [[nodiscard]] std::string scene_text() const;
 

@@ -161,8 +161,8 @@ nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
 }
 
 Scene read_job_scene(const std::filesystem::path& folder) {
-  ParseResult parsed = parse_job_scene(
-      read_text(JobPaths(folder).scene(), kMaxTextBytes, Links::refuse));
+  ParseResult parsed =
+      parse_job_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes, Links::refuse));
   if (!parsed.scene) throw SceneError(parsed.problems.front());
   return *std::move(parsed.scene);
 }

@@ -21,7 +21,7 @@ import tempfile
 BLOCK = re.compile(r"^<!-- tested -->\n```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SCENE = "schemas/examples/dambreak.json"
 FINE = "0.0015"  # m, the spacing that the reader writes
-COARSE = "0.0045"  # and the test
+COARSE = "0.003"  # and the test; coarser, quick machines end the run before it is killed
 
 # What a reader does meanwhile: wait until the service answers and the job's last attempt has begun,
 # with a checkpoint when one was asked for. The service is a background job of this shell; it is

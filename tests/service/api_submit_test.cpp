@@ -71,8 +71,7 @@ TEST(ApiSubmit, EstimatesTheTimeThatPlanDoes) {
   Service service;
   const Json scene = Json::parse(tiny_scene(0.1));
   const Scene parsed = parse_scene(scene.dump()).scene.value();
-  const double core_seconds =
-      expected_core_seconds(parsed, exact_estimate(parsed));
+  const double core_seconds = expected_core_seconds(parsed, exact_estimate(parsed));
   const Json job = body_of(service.post("/v1/jobs?threads=2", scene.dump()));
   EXPECT_DOUBLE_EQ(job["estimate"]["seconds"].get<double>(), core_seconds / 2);
   const Json dry = body_of(service.post("/v1/jobs?dry_run=1", scene.dump()));
