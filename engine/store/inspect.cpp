@@ -18,6 +18,12 @@
 #include "engine/store/trailer.hpp"
 
 namespace sluice {
+
+NLOHMANN_JSON_SERIALIZE_ENUM(Verdict, {{Verdict::whole, "whole"},
+                                       {Verdict::damaged, "damaged"},
+                                       {Verdict::unsupported, "unsupported"},
+                                       {Verdict::unreadable, "unreadable"}})
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -142,20 +148,6 @@ void require_sound_contents(const std::filesystem::path& path, const Json& facts
   }
 }
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::whole:
-      return "whole";
-    case Verdict::damaged:
-      return "damaged";
-    case Verdict::unsupported:
-      return "unsupported";
-    case Verdict::unreadable:
-      return "unreadable";
-  }
-  return "unknown";
-}
-
 Verdict verdict_of(StorageFault fault) {
   switch (fault) {
     case StorageFault::corrupt:
@@ -168,13 +160,36 @@ Verdict verdict_of(StorageFault fault) {
   }
 }
 
-/// Collects facts until something is wrong; that is then the last fact.
-Verdict collect(const std::filesystem::path& path, Json& facts) {
-  facts = {{"file", path.string()},
-           {"attributes", Json::object()},
-           {"groups", Json::object()},
-           {"series", Json::array()},
-           {"data_sets", Json::array()}};
+constexpr auto kReplace = Json::error_handler_t::replace;  // names and paths need not be UTF-8
+
+void add_problem(const StorageError& error, Json& facts) {
+  facts["problem"] = error.what();
+  facts["verdict"] = verdict_of(error.fault());
+}
+
+/// Adds what the image holds until something is wrong; that is then the last fact. All of it is
+/// done in a child, which a file that was made to hurt may kill.
+void add_contents_apart(const std::filesystem::path& path, const Bytes& image, Json& facts) {
+  const auto look = [&] {
+    try {
+      naming(path, [&] { add_contents(Hdf5Reader(image), facts); });
+      naming(path, [&] { require_sound_contents(path, facts); });
+    } catch (const StorageError& error) {
+      add_problem(error, facts);
+    }
+    return facts.dump(-1, ' ', false, kReplace);
+  };
+  try {
+    facts = Json::parse(work_apart(ApartLimits::for_bytes(image.size()), look));
+  } catch (const ApartFailure& failure) {
+    throw StorageError(StorageFault::corrupt, damage_message(path, failure));
+  }
+}
+
+Json collect(const std::filesystem::path& path) {
+  Json facts = {{"file", path.string()},      {"attributes", Json::object()},
+                {"groups", Json::object()},   {"series", Json::array()},
+                {"data_sets", Json::array()}, {"verdict", Verdict::whole}};
   try {
     const InputFile file(path, Links::refuse);
     facts["bytes"] = file.size();
@@ -182,18 +197,11 @@ Verdict collect(const std::filesystem::path& path, Json& facts) {
     facts["trailer"] = {{"version", trailer.version},
                         {"image_bytes", trailer.length},
                         {"xxh3_128", to_hex(trailer.hash)}};
-    const Bytes image = read_verified(path);
-    const auto look = [&] {
-      naming(path, [&] { add_contents(Hdf5Reader(image), facts); });
-      naming(path, [&] { require_sound_contents(path, facts); });
-    };
-    require_harmless(path, look);
-    look();
-    return Verdict::whole;
+    add_contents_apart(path, read_verified(path), facts);
   } catch (const StorageError& error) {
-    facts["problem"] = error.what();
-    return verdict_of(error.fault());
+    add_problem(error, facts);
   }
+  return facts;
 }
 
 // --- the text, made from the facts alone
@@ -272,11 +280,8 @@ std::string describe(const Json& facts) {
 }  // namespace
 
 Inspection inspect_file(const std::filesystem::path& path) {
-  Json facts;
-  const Verdict verdict = collect(path, facts);
-  facts["verdict"] = to_string(verdict);
-  constexpr auto kReplace = Json::error_handler_t::replace;  // a path need not be UTF-8
-  return {verdict, describe(facts), facts.dump(2, ' ', false, kReplace)};
+  const Json facts = collect(path);
+  return {facts["verdict"].get<Verdict>(), describe(facts), facts.dump(2, ' ', false, kReplace)};
 }
 
 std::string inspect(const std::filesystem::path& path) { return inspect_file(path).text; }
