@@ -4,8 +4,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "cli/adopt_scene.hpp"
 #include "cli/checks.hpp"
@@ -58,6 +60,18 @@ StudyPlan read_study(const fs::path& file) {
   throw CommandEnd(ExitCode::invalid_scene,
                    fmt::format("{} is no valid study: {} problem{}", file.string(), count,
                                count == 1 ? "" : "s"));
+}
+
+/// Each once, with the first run that has it: most are of all runs.
+void print_warnings(const fs::path& file, const std::vector<StudyRun>& runs) {
+  std::set<std::pair<std::string, std::string>> told;
+  for (const StudyRun& run : runs) {
+    for (const Problem& warning : run.warnings) {
+      if (!told.emplace(warning.pointer, warning.message).second) continue;
+      fmt::print(stderr, "{}: warning: run {}: {}: {}\n", file.string(), run.name, warning.pointer,
+                 warning.message);
+    }
+  }
 }
 
 /// The folder of a study: study.json, runs/NAME with a log beside each, and the results.
@@ -239,6 +253,7 @@ void study(StudyArguments arguments) {
     throw CommandEnd(ExitCode::usage, "--watch and --idempotency-key go with --server");
   }
   StudyPlan plan = read_study(arguments.file());
+  print_warnings(arguments.file(), plan.runs);
   plan.study.targets.insert(plan.study.targets.end(), arguments.below.begin(),
                             arguments.below.end());
   const fs::path root = arguments.folder.empty() ? fs::path(plan.study.name) : arguments.folder;

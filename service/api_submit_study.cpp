@@ -47,7 +47,10 @@ Response show_plan(const StudyPlan& plan) {
     Json document = estimate_document(run.scene, size, 1);
     core_seconds += document["seconds"].get<double>();
     disk += size.disk_bytes;
-    runs.push_back({{"run", run.name}, {"setup", run.setup}, {"estimate", std::move(document)}});
+    runs.push_back({{"run", run.name},
+                    {"setup", run.setup},
+                    {"estimate", std::move(document)},
+                    {"warnings", problem_list(run.warnings)}});
   }
   return json_response(200, {{"name", plan.study.name},
                              {"run_count", plan.runs.size()},

@@ -241,6 +241,7 @@ class Planner {
       return;
     }
     run.scene = *std::move(parsed.scene);
+    run.warnings = std::move(parsed.warnings);
     std::string readable = text_for_folder(scene.dump(2) + "\n");
     if (readable.size() <= kMaxSceneBytes) run.scene_text = std::move(readable);
     plan_.runs.push_back(std::move(run));

@@ -55,6 +55,7 @@ struct StudyRun {
   std::vector<std::pair<std::string, std::string>> values;  ///< varied key and value, as texts
   std::string scene_text;
   Scene scene;
+  std::vector<Problem> warnings;  ///< of its scene
 };
 
 /// A study with its runs, or why there is none: exactly one of `runs` and `problems` is not empty.

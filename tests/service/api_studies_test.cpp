@@ -204,12 +204,16 @@ TEST(ApiStudies, TakesARunThatIsPredictedToBeUnstableBecauseToFindOutIsItsPurpos
 
 TEST(ApiStudies, DryRunTellsEveryRunAndChangesNothing) {
   Service service;
-  const Response response = service.post("/v1/studies?dry_run=1", ladder().dump());
+  Json study = ladder();
+  study["scene"]["sensors"] = {
+      {{"name", "outside"}, {"kind", "pressure"}, {"position", {-0.11, 0.05}}, {"interval", 0.01}}};
+  const Response response = service.post("/v1/studies?dry_run=1", study.dump());
   ASSERT_EQ(response.status, 200) << response.body;
   const Json plan = body_of(response);
   EXPECT_EQ(plan["run_count"], 3);
   EXPECT_EQ(plan["runs"][0]["estimate"]["fluid_particles"], 50);  // 0.6 x 0.3 m, cells of 0.06 m
   EXPECT_EQ(plan["runs"][2]["estimate"]["fluid_particles"], 200);
+  EXPECT_EQ(plan["runs"][2]["warnings"][0]["pointer"], "/sensors/0/position");
   EXPECT_GT(plan["core_seconds"].get<double>(), 0.0);
   EXPECT_TRUE(service.store.list({}).empty());
   EXPECT_EQ(count_folders(service, "studies"), 0U);

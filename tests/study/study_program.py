@@ -78,6 +78,13 @@ class StudyProgram(unittest.TestCase):
         self.assertIn("<svg", (self.folder / "out" / "error-cost.svg").read_text())
         self.assertIn("| set-up |", (self.folder / "out" / "results.md").read_text())
 
+    def test_warns_once_of_what_all_its_runs_have(self):
+        outside = {"name": "outside", "kind": "pressure", "position": [-0.03, 0.05], "interval": 0.01}
+        self.write(scene=puddle(sensors=[*puddle()["sensors"], outside]), repeats={"count": 3})
+        told = self.study("--no-run").stderr
+        self.assertEqual(told.count("warning: run small-r1: /sensors/1/position: "), 1)
+        self.assertEqual(told.count("warning"), 1)
+
     def test_shows_a_failed_run_as_failed_and_does_not_try_it_again(self):
         # A jet that is faster than sound after its fall trips the guard of the speed.
         jet = [{"shape": "rectangle", "corner": [0, 0], "size": [0.2, 0.1],

@@ -178,6 +178,18 @@ TEST(Study, RefusesARunWhoseSolidsAreThinnerThanItsSpacingHolds) {
   expect_refused(study, "", "run small-spacing-0.0125: /obstacles/0");
 }
 
+TEST(Study, KeepsTheWarningsOfEachRun) {
+  json study = small_study();
+  study["scene"]["sensors"] = {
+      {{"name", "outside"}, {"kind", "pressure"}, {"position", {-0.03, 0.05}}, {"interval", 0.01}}};
+  study["repeats"] = {{"count", 2}};
+  const StudyPlan plan = plan_of(study);
+  ASSERT_EQ(plan.runs.size(), 2U);
+  ASSERT_EQ(plan.runs[1].warnings.size(), 1U);
+  EXPECT_EQ(plan.runs[1].warnings.front().pointer, "/sensors/0/position");
+  EXPECT_TRUE(plan_of(small_study()).runs.front().warnings.empty());
+}
+
 // Before there were schemes this base meant kick_drift_kick without any term.
 TEST(Study, TakenBeforeThereWereSchemesKeepsItsMeaning) {
   json study = small_study();
