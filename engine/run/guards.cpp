@@ -203,7 +203,8 @@ GuardBaselines initial_baselines(const Method& method, const SolverState& state,
   }
   double lifted = 0.0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    lifted += height_of(particles, i, method.gravity) - lowest;
+    // A particle's middle is half a spacing above its lower edge: else one row of them had none.
+    lifted += height_of(particles, i, method.gravity) - lowest + 0.5 * method.spacing;
   }
   double left = 0.0;
   for (const Retired& retired : state.retired) left += energy_that_left(method, retired);

@@ -106,7 +106,7 @@ struct Guard {
                                                     const StepFacts& facts);
 
 /// Baselines at the start. The scale of the energy guard is the energy that the fluid brings: what
-/// moves, is compressed, or stands above the fluid's lowest particle, and at least the kinetic
+/// moves, is compressed, or stands above the fluid's lower edge, and at least the kinetic
 /// energy at c/100, so that a scene at rest is not judged against rounding.
 [[nodiscard]] GuardBaselines initial_baselines(const Method& method, const SolverState& state,
                                                const Energy& energy);

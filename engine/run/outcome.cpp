@@ -162,9 +162,10 @@ std::string summary_text(const Outcome& outcome) {
   const Account& account = outcome.account;
   std::string text = fmt::format(
       "{} at step {}, t = {:.6g} s of {:.6g} s\n"
-      "  {:.2f} million fluid-particle steps per second ({} steps in {:.2f} s, {} threads, {})\n",
+      "  {:.2f} million fluid-particle steps per second ({} steps in {:.2f} s, {} thread{}{}{})\n",
       outcome.state(), outcome.step, outcome.time, outcome.end_time, account.rate() * 1e-6,
-      account.steps, account.seconds, outcome.threads, outcome.simd_target);
+      account.steps, account.seconds, outcome.threads, outcome.threads == 1 ? "" : "s",
+      outcome.simd_target.empty() ? "" : ", ", outcome.simd_target);
   for (const CostLine& line : cost_lines(account)) {
     text += fmt::format("  {:<20} {:>9.3f} s {:>6.1f} %\n", line.name, line.seconds,
                         100.0 * share(line.seconds, account));

@@ -253,6 +253,7 @@ void check(const Document& document, const CheckedAs& as, Problems& problems, Pr
   check_solids(scene, problems, warnings);
   check_sensor_places(scene, warnings);
   warn_of_growth(scene, warnings);
+  warn_of_slow_sound(scene, warnings);
   warn_of_short_intervals(scene, warnings);
 }
 

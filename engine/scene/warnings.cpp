@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/scene/document.hpp"
 #include "engine/scene/stability.hpp"
 #include "engine/scene/work.hpp"
 
@@ -16,10 +18,20 @@ std::string below(double limit) {
   return fmt::format("{:.6g}", std::floor(limit / unit * (1 + 1e-12)) * unit);
 }
 
+void warn_of_no_damping(const Scene& scene, Problems& warnings) {
+  const Method& m = scene.method;
+  if (m.viscosity || m.physical_viscosity || m.diffusion) return;
+  warnings.add(
+      "/numerics",
+      "names neither a viscosity nor density_diffusion: nothing damps what an impact stirs "
+      "up, and the energy guard may end the run; name one of artificial_viscosity, "
+      "physical_viscosity and density_diffusion");
+}
+
 }  // namespace
 
 void warn_of_growth(const Scene& scene, Problems& warnings) {
-  if (!is_beyond_flow_limit(scene)) return;
+  if (!is_beyond_flow_limit(scene)) return warn_of_no_damping(scene, warnings);
   const StabilityPrediction p = predict_stability(scene);
   if (p.outlook != Outlook::stable && p.courant_limit <= 0.0) {
     warnings.add("/numerics", fmt::format("makes errors at rest grow by 10^{:.2g} over the run at "
@@ -38,6 +50,20 @@ void warn_of_growth(const Scene& scene, Problems& warnings) {
                              "particles about it may fail above {}; write that or less",
                              p.courant, below(p.courant_limit), below(p.flow_limit)));
   }
+}
+
+void warn_of_slow_sound(const Scene& scene, Problems& warnings) {
+  constexpr double kLeast = 5.0;
+  constexpr double kUsual = 10.0;
+  double speed = std::sqrt(2.0 * scene.method.gravity.norm() * fluid_height(scene));
+  for (const FluidRegion& region : scene.fluid) speed = std::max(speed, region.greatest_speed());
+  const double c = scene.method.sound_speed;
+  if (c >= kLeast * speed * (1 - 1e-9)) return;
+  warnings.add("/material/sound_speed",
+               fmt::format("is {:.4g} m/s, {:.2g} times the speed that the fluid has or falls to, "
+                           "{:.4g} m/s: an impact then compresses it as no liquid is, and the run "
+                           "may fail; write {:.4g}, {} times that speed",
+                           c, c / speed, speed, kUsual * speed, kUsual));
 }
 
 void warn_of_short_intervals(const Scene& scene, Problems& warnings) {

@@ -121,7 +121,7 @@ struct Method {
   Box domain;                      ///< a particle that leaves it is retired
   std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
                                    ///< no open tank
-  /// m; above wall_top and outside of these x a particle is over the wall and retired at once, so
+  /// m; outside of these x a particle is over the wall from over_from() on and retired at once, so
   /// that what falls down behind a wall is not taken for a leak.
   double rim_left = -std::numeric_limits<double>::infinity();
   double rim_right = std::numeric_limits<double>::infinity();
@@ -146,9 +146,14 @@ struct Method {
     return 0.05 * std::min(1.0, courant / 0.25) * smoothing_length / sound_speed;
   }
 
+  /// Height from which on a particle beyond a rim's middle is over it, m: little below wall_top,
+  /// for what runs over a rim sinks into its outer edge.
+  [[nodiscard]] double over_from() const {
+    return wall_top ? std::min(*wall_top, walls_reach) : std::numeric_limits<double>::infinity();
+  }
   /// Whether a particle there stays in the run.
   [[nodiscard]] bool keeps(const Vec& p) const {
-    const bool over = wall_top && p.y() >= *wall_top && !(p.x() >= rim_left && p.x() <= rim_right);
+    const bool over = p.y() >= over_from() && !(p.x() >= rim_left && p.x() <= rim_right);
     const bool in_wall = p.y() < walls_reach && !room.contains(p);
     return domain.contains(p) && !over && !in_wall;
   }

@@ -2,8 +2,11 @@
 
 #include <hwy/aligned_allocator.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <new>
+#include <utility>
 #include <vector>
 
 namespace sluice {
@@ -17,15 +20,18 @@ inline constexpr std::size_t kCluster = 4;
 /// Values of a whole vector on the widest target: as many past the end may be read, not used.
 inline constexpr std::size_t kTail = 16;
 
-/// A growing aligned array with a tail.
+/// A growing aligned array with a tail. Throws std::bad_alloc.
 template <typename T>
 class AlignedArray {
  public:
   void resize(std::size_t size) {
     if (size > capacity_) {
-      capacity_ = with_slack(size);
-      data_ = hwy::AllocateAligned<T>(capacity_ + kTail);
-      std::fill(data_.get(), data_.get() + capacity_ + kTail, T{});
+      const std::size_t capacity = with_slack(size);
+      auto data = hwy::AllocateAligned<T>(capacity + kTail);
+      if (!data) throw std::bad_alloc();
+      std::fill(data.get(), data.get() + capacity + kTail, T{});
+      data_ = std::move(data);
+      capacity_ = capacity;
     }
     size_ = size;
   }

@@ -47,8 +47,7 @@ std::optional<RetireCause> cause_to_retire(const Method& method, const Particles
   const auto unfit = cause_to_exclude(method, place, p.velocity(slot), p.density_excess[slot]);
   if (unfit) return unfit;
   if (!method.keeps(place)) {
-    const bool over = method.wall_top && place.y() >= *method.wall_top;
-    return over ? RetireCause::overtopped : RetireCause::leaked;
+    return place.y() >= method.over_from() ? RetireCause::overtopped : RetireCause::leaked;
   }
   if (method.in_solid && method.in_solid(place, time)) return RetireCause::leaked;
   return {};

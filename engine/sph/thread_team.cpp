@@ -2,6 +2,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <utility>
+
 namespace sluice {
 namespace {
 
@@ -58,6 +60,12 @@ void ThreadTeam::run_shared(std::size_t rounds, std::size_t tasks, Call call, co
     wait_while(state_, now);
     now = state_.load(std::memory_order_acquire);
   }
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void ThreadTeam::keep_failure(std::exception_ptr failure) {
+  const std::scoped_lock one(failing_);
+  failure_ = std::move(failure);
 }
 
 void ThreadTeam::work(std::size_t self) {
@@ -67,7 +75,11 @@ void ThreadTeam::work(std::size_t self) {
     for (;;) {
       const std::size_t task = share.next.fetch_add(1, std::memory_order_relaxed);
       if (task >= share.end) break;
-      call_(body_, n < members ? task : share.rotated(task));
+      try {
+        call_(body_, n < members ? task : share.rotated(task));
+      } catch (...) {
+        keep_failure(std::current_exception());
+      }
     }
   }
 }

@@ -3,7 +3,9 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -23,8 +25,8 @@ class ThreadTeam {
 
   [[nodiscard]] int size() const { return static_cast<int>(helpers_.size()) + 1; }
 
-  /// Calls body(task) for each task in [0, tasks); returns when all are done. `body` must not
-  /// throw.
+  /// Calls body(task) for each task in [0, tasks); returns when all are done. Where one throws, for
+  /// want of memory, one of the exceptions is thrown here after the rest.
   template <class Body>
   void run(std::size_t tasks, const Body& body) {
     if (helpers_.empty() || tasks < 2) {
@@ -39,7 +41,7 @@ class ThreadTeam {
   /// Calls first(task) for each task in [0, tasks), and second(task) for each, once first() is done
   /// for it and for those that needs(task) lists, all of them earlier tasks: whoever has no first
   /// left to take need not wait for the last of them, and what a first leaves in the cache is used
-  /// from there where there is one thread. Returns when all are done. Nothing may throw.
+  /// from there where there is one thread. Returns when all are done; exceptions as in run().
   template <class First, class Needs, class Second>
   void run_both(std::size_t tasks, const First& first, const Needs& needs, const Second& second) {
     if (helpers_.empty() || tasks < 2) {
@@ -52,8 +54,8 @@ class ThreadTeam {
     reset_firsts(tasks);
     const auto body = [&](std::size_t call) {
       if (call < tasks) {
+        const Finish at_the_end{*this, call};  // also when it throws: others wait for it
         first(call);
-        finish_first(call);
         return;
       }
       // Firsts are taken before any second: those that are not done are at work.
@@ -79,12 +81,19 @@ class ThreadTeam {
     }
   };
 
+  struct Finish {
+    ThreadTeam& team;
+    std::size_t task;
+    ~Finish() { team.finish_first(task); }
+  };
+
   /// Calls call(body, n) for n in [0, rounds * tasks): each thread begins a round when nothing is
   /// left to take of the one before. The first of a share needs what the thread before does last,
   /// and so is last in a second round.
   void run_shared(std::size_t rounds, std::size_t tasks, Call call, const void* body);
   void work(std::size_t self);
   void help(std::size_t self);
+  void keep_failure(std::exception_ptr failure);
 
   void reset_firsts(std::size_t tasks);
   void finish_first(std::size_t task);
@@ -100,6 +109,8 @@ class ThreadTeam {
   Call call_ = nullptr;
   const void* body_ = nullptr;
   std::size_t rounds_ = 1;
+  std::mutex failing_;
+  std::exception_ptr failure_;                                ///< of one of the tasks
   std::unique_ptr<Share[]> shares_;                           // of each round
   std::unique_ptr<std::atomic<std::uint64_t>[]> first_done_;  // of each task
   std::size_t first_count_ = 0;

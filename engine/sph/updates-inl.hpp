@@ -269,7 +269,7 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   const V most_excess = hn::Set(d, method.most_density_excess());
   const Box& domain = method.domain;
   const Box& room = method.room;
-  const V top = hn::Set(d, method.wall_top.value_or(std::numeric_limits<double>::infinity()));
+  const V over_from = hn::Set(d, method.over_from());
   const V rim_left = hn::Set(d, method.rim_left);
   const V rim_right = hn::Set(d, method.rim_right);
   const V room_left = hn::Set(d, room.min.x());
@@ -292,7 +292,7 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     const auto inside =
         hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
                 hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
-    const auto over = hn::And(y >= top, hn::Or(x<rim_left, x> rim_right));
+    const auto over = hn::And(y >= over_from, hn::Or(x<rim_left, x> rim_right));
     const auto outside_room =
         hn::Or(hn::Or(x<room_left, x> room_right), hn::Or(y<room_floor, y> room_ceiling));
     const auto in_wall = hn::And(y < walls_reach, outside_room);

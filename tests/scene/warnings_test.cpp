@@ -200,6 +200,31 @@ TEST(Warnings, NameAnOutlookThatIsNotStable) {
   EXPECT_THAT(warning_at(scene, "/numerics"), HasSubstr("recommended"));
 }
 
+TEST(Warnings, NameASchemeThatDampsNothing) {
+  json scene = base_scene();
+  scene["end_time"] = 0.1;
+  for (const char* key : {"density_diffusion", "artificial_viscosity"}) {
+    scene["numerics"][key] = nullptr;
+  }
+  EXPECT_THAT(warning_at(scene, "/numerics"), HasSubstr("nothing damps"));
+  scene["numerics"].erase("density_diffusion");
+  EXPECT_THAT(warned(scene), IsEmpty());
+}
+
+TEST(Warnings, NameASoundThatIsNotMuchFasterThanTheFluid) {
+  json scene = base_scene();
+  const double c = parse(scene).scene->method.sound_speed;  // ten times the speed of a fall
+  scene["material"]["sound_speed"] = 0.51 * c;
+  EXPECT_THAT(warned(scene), IsEmpty());
+  scene["material"]["sound_speed"] = 0.49 * c;
+  EXPECT_THAT(warned(scene), ElementsAre("/material/sound_speed"));
+  scene["material"].erase("sound_speed");
+  scene["fluid"][0]["velocity"] = {0.21 * c, 0.0};
+  EXPECT_THAT(warned(scene), ElementsAre("/material/sound_speed"));
+  scene["material"]["sound_speed"] = 2.1 * c;
+  EXPECT_THAT(warned(scene), IsEmpty());
+}
+
 TEST(Warnings, TheExamplesHaveNoneButOfIntervals) {
   for (const auto& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
     for (const Problem& each : parse_scene(testing::read_text(path)).warnings) {

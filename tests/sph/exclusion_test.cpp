@@ -234,15 +234,19 @@ TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
   EXPECT_TRUE(m.keeps({1.1, 0.6})) << "over the wall, before its middle";
   EXPECT_TRUE(m.keeps({1.1, 0.45})) << "it lies on the wall";
   EXPECT_FALSE(m.keeps({1.3, 0.6}));
+  EXPECT_FALSE(m.keeps({1.3, 0.45})) << "it has run over the wall";
   for (const Integrator integrator : kIntegrators) {
     m.integrator = integrator;
     Fluid fluid;
-    for (const Vec& place : {Vec(0.0, 0.0), Vec(1.1, 0.0), Vec(0.0, -1.1), Vec(1.1, 0.6)}) {
+    for (const Vec& place :
+         {Vec(0.0, 0.0), Vec(1.1, 0.0), Vec(0.0, -1.1), Vec(1.1, 0.6), Vec(1.3, 0.45)}) {
       fluid.add(place);
     }
     Solver solver(m, start_from(fluid), {}, {});
-    ASSERT_EQ(solver.retired().size(), 2U);
-    for (const Retired& each : solver.retired()) EXPECT_EQ(each.cause, RetireCause::leaked);
+    ASSERT_EQ(solver.retired().size(), 3U);
+    for (const Retired& each : solver.retired()) {
+      EXPECT_EQ(each.cause, each.id == 4.0 ? RetireCause::overtopped : RetireCause::leaked);
+    }
   }
 }
 

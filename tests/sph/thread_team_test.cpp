@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -64,6 +65,25 @@ TEST(ThreadTeam, CallsBothOfEveryTaskExactlyOnceAndNoSecondBeforeTheFirstsItNeed
         }
       }
     }
+  }
+}
+
+TEST(ThreadTeam, ThrowsWhatATaskThrewAfterTheOthersAndGoesOnWorking) {
+  for (const int threads : {2, 3, 8}) {
+    ThreadTeam team(threads);
+    constexpr std::size_t kTasks = 100;
+    std::vector<int> calls(kTasks, 0);
+    const auto fails = [&](std::size_t task) {
+      ++calls[task];
+      if (task == 41) throw std::bad_alloc();
+    };
+    const auto needs = [](std::size_t) { return std::vector<std::size_t>{41}; };
+    const auto nothing = [](std::size_t) {};
+    EXPECT_THROW(team.run(kTasks, fails), std::bad_alloc);
+    EXPECT_EQ(calls, std::vector<int>(kTasks, 1));
+    EXPECT_THROW(team.run_both(kTasks, fails, needs, nothing), std::bad_alloc);
+    EXPECT_EQ(calls, std::vector<int>(kTasks, 2));
+    EXPECT_NO_THROW(team.run(kTasks, nothing));
   }
 }
 
