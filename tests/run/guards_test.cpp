@@ -197,14 +197,15 @@ TEST(Guards, StopClumpsButAllowAWiderSupportItsNeighbours) {
 
 TEST(EnergyScale, OfAColumnIsItsPotentialEnergyAboveItsFoot) {
   SolverState state;
-  // Two particles 1 m apart, the lower 5 m above y = 0: lifted by 1 m together.
+  // Two particles 1 m apart, the lower 5 m above y = 0: lifted by 1 m together, and each by half a
+  // spacing above the foot.
   state.particles.x = {0.0, 0.0};
   state.particles.y = {5.0, 6.0};
   Energy energy;
   const Method method = paper_method();
   energy.potential = method.particle_mass() * 9.81 * 11.0;
   const GuardBaselines base = initial_baselines(method, state, energy);
-  EXPECT_NEAR(base.energy_scale, method.particle_mass() * 9.81 * 1.0, 1e-12);
+  EXPECT_NEAR(base.energy_scale, method.particle_mass() * 9.81 * (1.0 + method.spacing), 1e-12);
   EXPECT_DOUBLE_EQ(base.initial_energy, energy.total());
   EXPECT_DOUBLE_EQ(base.initial_mass, 2.0 * method.particle_mass());
 }
