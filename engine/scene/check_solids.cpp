@@ -36,7 +36,7 @@ std::string spacing_text(double width, double count) {
 std::optional<Narrow> thin_part(const Scene& scene, const Solids& solids, std::size_t i,
                                 double dx) {
   return thin_part(solids,
-                   outline(scene.obstacles[i], dx / 2, kMostPoints / scene.obstacles.size()), dx);
+                   outline(scene.obstacles[i], dx / 4, kMostPoints / scene.obstacles.size()), dx);
 }
 
 /// The spacing at which an obstacle that is too thin would be thick enough, as text; "" if there is

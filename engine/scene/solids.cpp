@@ -12,7 +12,7 @@ namespace {
 constexpr double kTiny = 1e-9;       // of the spacing: gaps and depths of rounding
 constexpr std::size_t kFewest = 32;  // points of a curved outline
 constexpr std::size_t kFewestOnSide = 4;
-constexpr double kNearCorners = 1.25;  // steps
+constexpr double kNearCorners = 2.5;  // steps
 constexpr int kDirections = 32;
 constexpr int kIterations = 10;
 
