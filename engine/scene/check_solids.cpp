@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
+#include "engine/scene/narrow_part.hpp"
 #include "engine/scene/solids.hpp"
+#include "engine/scene/thin_solids.hpp"
 
 namespace sluice {
 namespace {
@@ -13,6 +17,9 @@ namespace {
 constexpr std::size_t kMostPoints = 4096;
 constexpr double kAlike = 1 - 1e-6;  // two spacings that rounding made less are two
 constexpr double kOnFace = 0.5;      // spacings
+constexpr double kDeepest = 16;      // spacings
+constexpr int kMostTries = 8;
+constexpr double kFinest = 20;  // of this part of a spacing none is advised
 constexpr int kLinePoints = 256;
 
 /// A length in m and in spacings, with its place.
@@ -26,6 +33,39 @@ std::string spacing_text(double width, double count) {
   return fmt::format("{:.3g}", 0.995 * width / count);
 }
 
+std::optional<Narrow> thin_part(const Scene& scene, const Solids& solids, std::size_t i,
+                                double dx) {
+  return thin_part(solids,
+                   outline(scene.obstacles[i], dx / 4, kMostPoints / scene.obstacles.size()), dx);
+}
+
+/// The spacing at which an obstacle that is too thin would be thick enough, as text; "" if there is
+/// none near: whatever the spacing, the end of a sharp wedge is thinner than two.
+std::string mending_spacing(const Scene& scene, const Solids& solids, std::size_t i, Narrow thin) {
+  for (int tries = 0; tries < kMostTries && thin.width > 0.0; ++tries) {
+    const std::string text = spacing_text(thin.width, kThinnestSolid);
+    const double dx = std::stod(text);
+    if (dx < scene.method.spacing / kFinest) break;
+    const auto still = thin_part(scene, solids, i, dx);
+    if (!still) return text;
+    thin = *still;
+  }
+  return "";
+}
+
+std::string thin_text(const Scene& scene, const Solids& solids, std::size_t i, Narrow thin) {
+  const double dx = scene.method.spacing;
+  thin.width = std::max(0.0, thin.width);
+  const std::string mending = mending_spacing(scene, solids, i, thin);
+  return fmt::format(
+      "is only {} thick; must be at least {} spacings, or fluid gets through it; make it {:.3g} m "
+      "thick{}",
+      size_text(thin, dx), kThinnestSolid, kThinnestSolid * dx,
+      mending.empty() ? " there, also where it tapers or touches other solids: a lower "
+                        "/resolution/spacing does not mend it"
+                      : fmt::format(" or lower /resolution/spacing to {} m", mending));
+}
+
 void check_obstacle(const Scene& scene, const Solids& solids, std::size_t i, Problems& problems,
                     Problems& warnings) {
   const double dx = scene.method.spacing;
@@ -34,13 +74,8 @@ void check_obstacle(const Scene& scene, const Solids& solids, std::size_t i, Pro
   const auto narrow = [&](Across across, double spacings) {
     return narrow_part(solids, points, across, spacings * kAlike * dx, dx);
   };
-  if (const auto thin = narrow(Across::solid, kThinnestSolid)) {
-    problems.add(
-        pointer,
-        fmt::format("is only {} thick; must be at least {} spacings, or fluid gets through "
-                    "it; make it {:.3g} m thick or lower /resolution/spacing to {} m",
-                    size_text(*thin, dx), kThinnestSolid, kThinnestSolid * dx,
-                    spacing_text(thin->width, kThinnestSolid)));
+  if (const auto thin = thin_part(scene, solids, i, dx)) {
+    problems.add(pointer, thin_text(scene, solids, i, *thin));
   } else if (const auto few = narrow(Across::solid, kFewAcross)) {
     warnings.add(pointer, fmt::format("is {} across; pressures on a body that fluid flows round "
                                       "want at least {}; for them lower /resolution/spacing to {} "
@@ -49,8 +84,10 @@ void check_obstacle(const Scene& scene, const Solids& solids, std::size_t i, Pro
                                       spacing_text(few->width, kFewAcross)));
   }
   if (const auto gap = narrow(Across::gap, kNarrowestSlit)) {
-    warnings.add(pointer, fmt::format("leaves a slit of {}; fluid flows through none below {} "
-                                      "spacings; close it or lower /resolution/spacing to {} m",
+    warnings.add(pointer, fmt::format("leaves a slit of {}; below {} spacings fewer than two "
+                                      "particles fit side by side, and what passes is no flow of "
+                                      "the fluid; close it, widen it or lower "
+                                      "/resolution/spacing to {} m",
                                       size_text(*gap, dx), kNarrowestSlit,
                                       spacing_text(gap->width, kNarrowestSlit)));
   }
@@ -58,8 +95,10 @@ void check_obstacle(const Scene& scene, const Solids& solids, std::size_t i, Pro
 
 void check_point(const Sensor& sensor, const Scene& scene, const Solids& solids,
                  const std::string& pointer, Problems& warnings) {
-  const double depth = solids.depth(sensor.position);
-  if (depth <= kOnFace * scene.method.spacing) return;
+  const double half = kOnFace * scene.method.spacing;
+  // One at a seam looks as deep as it is, but not endlessly far.
+  if (solids.depth(sensor.position, 1.01 * half) <= half) return;
+  const double depth = solids.depth(sensor.position, kDeepest * scene.method.spacing);
   warnings.add(
       at(pointer, "position"),
       fmt::format(

@@ -1,21 +1,23 @@
 #include "engine/scene/leaks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <utility>
+#include <memory>
+#include <numbers>
 #include <vector>
 
 #include "engine/scene/geometry.hpp"
+#include "engine/scene/solids.hpp"
+#include "engine/scene/thin_solids.hpp"
 
 namespace sluice {
 namespace {
 
-/// A solid with the box that holds all that is deep in it.
-struct Solid {
-  Shape shape;
-  Box box;
-  double depth;  ///< m
-};
+constexpr double kShallow = 0.4;  // spacings; nobody has leaked who is less deep
+constexpr double kDeepEnough = 1.01;
+constexpr int kWays = 8;  // across a solid
+constexpr double kStepsPerSpacing = 8;
 
 /// The box without a margin on all sides.
 Box inner(Box box, double margin) {
@@ -37,30 +39,80 @@ void add_tank(const Tank& tank, double depth, Method& method) {
   method.walls_reach = tank.height - depth;
 }
 
+/// The obstacles, with all that is needed to say who is deep in them.
+class Obstacles {
+ public:
+  explicit Obstacles(const Scene& scene)
+      : scene_(std::make_shared<const Scene>(scene)),
+        solids_(*scene_),
+        spacing_(scene.method.spacing) {
+    for (const Shape& shape : scene_->obstacles) boxes_.push_back(bounds(shape));
+  }
+
+  [[nodiscard]] bool hold_deep(const Vec& place) const {
+    if (!hold(place)) return false;
+    const double depth = solids_.depth(place, kDeepEnough * spacing_);
+    return depth > kShallow * spacing_ && depth > allowed_depth(thickness(place), spacing_);
+  }
+
+ private:
+  [[nodiscard]] bool hold(const Vec& place) const {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (boxes_[i].contains(place) && contains(scene_->obstacles[i], place)) return true;
+    }
+    return false;
+  }
+
+  /// How thick what is solid is around a place, m, where it keeps fluid from fluid; what is thicker
+  /// than four spacings counts as that, and so does a tip: fluid flows round it anyway.
+  [[nodiscard]] double thickness(const Vec& place) const {
+    const double thick = 4 * spacing_;
+    const double beyond = 0.5 * spacing_;
+    double least = thick;
+    Vec one = place;
+    Vec other = place;
+    for (int k = 0; k < kWays; ++k) {
+      const double angle = std::numbers::pi * k / kWays;
+      const Vec way(std::cos(angle), std::sin(angle));
+      const auto to_open = [&](const Vec& direction) {
+        const double step = spacing_ / kStepsPerSpacing;
+        return solids_.reach(place, direction, least, step).value_or(least);
+      };
+      const double ahead = to_open(way);
+      const double back = to_open(-way);
+      if (ahead + back >= least) continue;
+      least = ahead + back;
+      one = place + (ahead + beyond) * way;
+      other = place - (back + beyond) * way;
+    }
+    const bool thin = least < thick && keeps_apart(solids_, one, other, least, spacing_);
+    return thin ? least : thick;
+  }
+
+  std::shared_ptr<const Scene> scene_;  ///< that the solids are of
+  Solids solids_;
+  double spacing_;
+  std::vector<Box> boxes_;
+};
+
 }  // namespace
 
-double allowed_depth(const Shape& solid, double spacing) {
-  // Half of the thickness of a long plate.
-  const double half_thickness = area(solid) / perimeter(solid);
-  return std::clamp(0.6 * half_thickness, 0.4 * spacing, spacing);
+double allowed_depth(double thickness, double spacing) {
+  return std::clamp(0.6 * 0.5 * thickness, kShallow * spacing, spacing);
 }
 
 Method method_with_solids(const Scene& scene) {
   Method method = scene.method;
   const double depth = method.spacing;
   if (scene.tank) add_tank(*scene.tank, depth, method);
-  std::vector<Solid> solids;
-  for (const Shape& shape : scene.obstacles) {
-    const double here = allowed_depth(shape, method.spacing);
-    solids.push_back({shape, inner(bounds(shape), here), here});
-  }
-  if (solids.empty() && !method.lifted_wall) return method;
-  method.in_solid = [solids = std::move(solids), gate = method.lifted_wall, depth](const Vec& place,
-                                                                                   double time) {
-    if (gate && is_deep(*gate, place, time, depth)) return true;
-    return std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
-      return solid.box.contains(place) && signed_distance(solid.shape, place) < -solid.depth;
-    });
+  if (scene.obstacles.empty() && !method.lifted_wall) return method;
+  Scene solid;
+  solid.tank = scene.tank;
+  solid.obstacles = scene.obstacles;
+  solid.method.spacing = method.spacing;
+  method.in_solid = [obstacles = Obstacles(solid), gate = method.lifted_wall, depth](
+                        const Vec& place, double time) {
+    return (gate && is_deep(*gate, place, time, depth)) || obstacles.hold_deep(place);
   };
   return method;
 }

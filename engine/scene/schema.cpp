@@ -6,8 +6,6 @@
 
 namespace sluice {
 
-using json = SchemaWriter::json;
-
 std::string SchemaWriter::about(std::string_view about, std::string_view otherwise) {
   std::string text{about};
   if (!otherwise.empty()) text += ". Left out: " + std::string(otherwise);
@@ -15,7 +13,7 @@ std::string SchemaWriter::about(std::string_view about, std::string_view otherwi
 }
 
 // What allows one number; for a vector this holds for each component.
-json SchemaWriter::describe_number(const NumberSpec& spec) {
+SchemaWriter::json SchemaWriter::describe_number(const NumberSpec& spec) {
   json schema = {{"type", "number"}};
   const bool excluded = spec.range.low_end == Range::Low::excluded;
   schema[excluded ? "exclusiveMinimum" : "minimum"] = spec.range.low;
@@ -23,7 +21,7 @@ json SchemaWriter::describe_number(const NumberSpec& spec) {
   return schema;
 }
 
-json SchemaWriter::describe_vector(const NumberSpec& spec) {
+SchemaWriter::json SchemaWriter::describe_vector(const NumberSpec& spec) {
   return {{"description", about(spec.about, spec.otherwise)},
           {"x-unit", spec.unit},
           {"type", "array"},
@@ -115,7 +113,7 @@ void SchemaWriter::any(std::string_view key, nlohmann::json& /*member*/, const K
   put(key, std::move(property), spec.need);
 }
 
-json SchemaWriter::schema() const {
+SchemaWriter::json SchemaWriter::schema() const {
   if (!branches_.empty()) return {{"oneOf", branches_}};
   json result = {{"type", "object"}, {"properties", properties_}};
   if (!required_.empty()) result["required"] = required_;
@@ -127,7 +125,7 @@ std::string scene_schema_text() {
   Document fresh;
   SchemaWriter writer;
   describe(writer, fresh);
-  json schema = {
+  SchemaWriter::json schema = {
       {"$schema", "https://json-schema.org/draft/2020-12/schema"},
       {"$id", "urn:sluice:scene:1"},
       {"title", "Sluice scene"},

@@ -9,22 +9,26 @@
 namespace sluice {
 namespace {
 
-constexpr double kTiny = 1e-9;        // of the spacing: gaps and depths of rounding
-constexpr double kOffOutline = 1e-3;  // of the spacing: a point on the side of the outline
-constexpr std::size_t kStepsAcross =
-    64;                              // of a search; nothing thinner than a part of it is missed
+constexpr double kTiny = 1e-9;       // of the spacing: gaps and depths of rounding
 constexpr std::size_t kFewest = 32;  // points of a curved outline
 constexpr std::size_t kFewestOnSide = 4;
-constexpr double kSteep = 0.18;  // the tangent of ten degrees
+constexpr double kNearCorners = 2.5;  // steps
+constexpr int kDirections = 32;
+constexpr int kIterations = 10;
 
+/// Points along a side; where they are farther apart than that, two more `near` its ends.
 void add_side(std::vector<OutlinePoint>& points, const Vec& a, const Vec& b, bool left_is_out,
-              std::size_t count) {
-  const Vec along = (b - a).normalized();
+              std::size_t count, double near) {
+  const double length = (b - a).norm();
+  const Vec along = (b - a) / length;
   const Vec left(-along.y(), along.x());
-  for (std::size_t k = 0; k < count; ++k) {
-    const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-    points.push_back({a + part * (b - a), left_is_out ? left : Vec(-left)});
-  }
+  const double step = length / static_cast<double>(count);
+  const auto add = [&](double distance) {
+    points.push_back({a + distance * along, left_is_out ? left : Vec(-left)});
+  };
+  if (near < 0.5 * step) add(near);
+  for (std::size_t k = 0; k < count; ++k) add((static_cast<double>(k) + 0.5) * step);
+  if (near < 0.5 * step) add(length - near);
 }
 
 std::vector<OutlinePoint> round_outline(const Vec& center, const Vec& axes, std::size_t count) {
@@ -38,7 +42,8 @@ std::vector<OutlinePoint> round_outline(const Vec& center, const Vec& axes, std:
   return points;
 }
 
-std::vector<OutlinePoint> straight_outline(const std::vector<Vec>& corners, double step) {
+std::vector<OutlinePoint> straight_outline(const std::vector<Vec>& corners, double step,
+                                           double near) {
   double twice_area = 0.0;
   const std::size_t n = corners.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -52,13 +57,14 @@ std::vector<OutlinePoint> straight_outline(const std::vector<Vec>& corners, doub
     const Vec& b = corners[(i + 1) % n];
     const double wanted = std::ceil((b - a).norm() / step);
     add_side(points, a, b, twice_area < 0,
-             std::max(kFewestOnSide, static_cast<std::size_t>(wanted)));
+             std::max(kFewestOnSide, static_cast<std::size_t>(wanted)), near);
   }
   return points;
 }
 
 struct OutlineOf {
   double step;
+  double near;
 
   std::vector<OutlinePoint> operator()(const Circle& s) const {
     return (*this)(Ellipse{s.center, Vec::Constant(s.radius)});
@@ -70,49 +76,35 @@ struct OutlineOf {
   std::vector<OutlinePoint> operator()(const Rectangle& s) const {
     return straight_outline(
         {s.corner, s.corner + Vec(s.size.x(), 0), s.corner + s.size, s.corner + Vec(0, s.size.y())},
-        step);
+        step, near);
   }
   std::vector<OutlinePoint> operator()(const Polygon& s) const {
-    return straight_outline(s.points, step);
+    return straight_outline(s.points, step, near);
   }
 };
 
-/// How narrow a part is along its length, unless it tapers: between the quartiles a wedge grows by
-/// 3 and the gap under a circle by 9, and the rounded edge of a body grows steeply.
-std::optional<Narrow> narrow_run(std::vector<Narrow> run) {
-  double length = 0.0;
-  for (std::size_t k = 1; k < run.size(); ++k) length += (run[k].place - run[k - 1].place).norm();
-  std::sort(run.begin(), run.end(),
-            [](const Narrow& a, const Narrow& b) { return a.width < b.width; });
-  const Narrow& lower = run[run.size() / 4];
-  const Narrow& upper = run[(3 * run.size()) / 4];
-  const bool wedge = lower.width < 0.5 * upper.width;
-  const bool edge = upper.width - lower.width > kSteep * 0.5 * length;
-  if (wedge || edge) return std::nullopt;
-  return lower;
+/// Distance of a point in the open from an ellipse, m, also where its ends are sharp: from one
+/// nearest point to the next by the circle that fits the ellipse there (Chatelain's iteration).
+double distance_to_ellipse(const Ellipse& s, const Vec& point) {
+  const Vec p = (point - s.center).cwiseAbs();
+  const Vec& axes = s.semi_axes;
+  const double excess = axes.x() * axes.x() - axes.y() * axes.y();
+  Vec unit = Vec::Constant(std::numbers::sqrt2 / 2);
+  for (int k = 0; k < kIterations; ++k) {
+    const Vec middle(excess * std::pow(unit.x(), 3) / axes.x(),
+                     -excess * std::pow(unit.y(), 3) / axes.y());
+    const double radius = (axes.cwiseProduct(unit) - middle).norm();
+    const Vec way = (p - middle).normalized();
+    unit = (middle + radius * way).cwiseQuotient(axes).cwiseMax(0.0).cwiseMin(1.0).normalized();
+  }
+  return (axes.cwiseProduct(unit) - p).norm();
 }
 
-/// The narrowest of the runs of neighbours that have a width; `widths` goes round.
-std::optional<Narrow> narrowest(const std::vector<std::optional<Narrow>>& widths) {
-  const auto wide = std::find(widths.begin(), widths.end(), std::nullopt);
-  const auto start = static_cast<std::size_t>(wide - widths.begin());
-  std::optional<Narrow> best;
-  std::vector<Narrow> run;
-  const auto end_run = [&] {
-    const auto found = run.empty() ? std::nullopt : narrow_run(run);
-    if (found && (!best || found->width < best->width)) best = found;
-    run.clear();
-  };
-  for (std::size_t k = 0; k < widths.size(); ++k) {
-    const auto& each = widths[(start + k) % widths.size()];
-    if (each) {
-      run.push_back(*each);
-    } else {
-      end_run();
-    }
-  }
-  end_run();
-  return best;
+bool is_nearer(const Shape& shape, const Vec& point, double distance) {
+  const double first_order = signed_distance(shape, point);
+  const auto* ellipse = std::get_if<Ellipse>(&shape);
+  if (ellipse == nullptr || first_order <= 0.0) return first_order < distance;
+  return distance_to_ellipse(*ellipse, point) < distance;
 }
 
 }  // namespace
@@ -146,12 +138,34 @@ bool Solids::holds(const Vec& p) const {
   });
 }
 
-double Solids::depth(const Vec& p) const {
-  double most = depth_in_walls(p);
-  for (const Body& body : bodies_) {
-    if (body.box.contains(p)) most = std::max(most, -signed_distance(*body.shape, p));
+bool Solids::leaves_room(const Vec& p, double margin) const {
+  const double enough = margin - slack_;
+  if (tank_) {
+    const double aside = std::min(p.x(), tank_->width - p.x());
+    const double below = tank_->height - p.y();
+    if (p.y() < enough || (!tank_->open_top && below < enough)) return false;
+    // Beside a wall, or above its rim.
+    if (std::hypot(std::max(0.0, aside), std::max(0.0, -below)) < enough) return false;
   }
-  return most;
+  return std::none_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+    const Vec beyond = (body.box.min - p).cwiseMax(p - body.box.max);
+    return beyond.maxCoeff() < enough && is_nearer(*body.shape, p, enough);
+  });
+}
+
+double Solids::depth(const Vec& p, double most) const {
+  double deepest = depth_in_walls(p);
+  for (const Body& body : bodies_) {
+    if (body.box.contains(p)) deepest = std::max(deepest, -signed_distance(*body.shape, p));
+  }
+  if (deepest >= most || !holds(p)) return deepest;
+  double nearest = most;
+  for (int k = 0; k < kDirections && nearest > deepest; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kDirections;
+    const Vec way(std::cos(angle), std::sin(angle));
+    nearest = reach(p, way, nearest, most / 32).value_or(nearest);
+  }
+  return std::max(deepest, nearest);
 }
 
 std::optional<double> Solids::reach(const Vec& from, const Vec& direction, double most,
@@ -171,25 +185,8 @@ std::optional<double> Solids::reach(const Vec& from, const Vec& direction, doubl
 }
 
 std::vector<OutlinePoint> outline(const Shape& shape, double step, std::size_t most) {
-  return std::visit(OutlineOf{std::max(step, perimeter(shape) / static_cast<double>(most))}, shape);
-}
-
-std::optional<Narrow> narrow_part(const Solids& solids, const std::vector<OutlinePoint>& outline,
-                                  Across across, double most, double spacing) {
-  const double off = kOffOutline * spacing;
-  std::vector<std::optional<Narrow>> widths;
-  for (const OutlinePoint& point : outline) {
-    widths.emplace_back();
-    const Vec before = point.place + off * point.out;
-    const Vec behind = point.place - off * point.out;
-    // Covered by another solid, or by the outline itself where it turns sharply.
-    if (solids.holds(before) || !solids.holds(behind)) continue;
-    const bool solid = across == Across::solid;
-    const auto width = solids.reach(solid ? behind : before, solid ? Vec(-point.out) : point.out,
-                                    most - off, most / kStepsAcross);
-    if (width) widths.back() = Narrow{*width + off, point.place};
-  }
-  return narrowest(widths);
+  const double wider = std::max(step, perimeter(shape) / static_cast<double>(most));
+  return std::visit(OutlineOf{wider, kNearCorners * step}, shape);
 }
 
 }  // namespace sluice

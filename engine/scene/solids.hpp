@@ -15,9 +15,11 @@ class Solids {
   explicit Solids(const Scene& scene);
 
   [[nodiscard]] bool holds(const Vec& point) const;
-  /// How far a point is from the open, m: 0 in the open. Where solids lie side by side, at least
-  /// this far.
-  [[nodiscard]] double depth(const Vec& point) const;
+  /// Whether a point is in the open and at least this far from all that is solid, m.
+  [[nodiscard]] bool leaves_room(const Vec& point, double margin) const;
+  /// How far a point is from the open, m: 0 in the open, also where one solid lies against another;
+  /// there it is sought up to `most` in steps of `most`/32, and all that is deeper counts as that.
+  [[nodiscard]] double depth(const Vec& point, double most) const;
   /// The same of the walls around the tank alone.
   [[nodiscard]] double depth_in_walls(const Vec& point) const;
   /// How far one gets from a point in the open or in a solid before that changes, m; nothing when
@@ -43,24 +45,7 @@ struct OutlinePoint {
 };
 
 /// Points along an outline in order, equally far apart: about `step`, but at most about `most` of
-/// them, and a few on each side of a polygon. None is a corner.
+/// them, and a few on each side of a polygon, also near its corners. None is a corner.
 [[nodiscard]] std::vector<OutlinePoint> outline(const Shape& shape, double step, std::size_t most);
-
-/// A part of an outline across which something is narrow.
-struct Narrow {
-  double width = 0.0;  ///< m
-  Vec place = Vec::Zero();
-};
-
-enum class Across {
-  solid,  ///< from the open through the body and into the open again
-  gap,    ///< from the body through the open to what is solid again: a slit
-};
-
-/// The narrowest part that is narrower than `most`, m. What tapers to nothing is none: the corner
-/// of a body, or the gap under a circle on a floor.
-[[nodiscard]] std::optional<Narrow> narrow_part(const Solids& solids,
-                                                const std::vector<OutlinePoint>& outline,
-                                                Across across, double most, double spacing);
 
 }  // namespace sluice

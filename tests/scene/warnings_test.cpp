@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/scene/stability.hpp"
 #include "engine/scene/work.hpp"
@@ -113,6 +116,93 @@ TEST(ThinSolids, MayTaperAtCornersAndEdges) {
       << "a wedge";
 }
 
+json polygon(const std::vector<std::pair<double, double>>& points) {
+  json corners = json::array();
+  for (const auto& [x, y] : points) corners.push_back({x, y});
+  return {{"shape", "polygon"}, {"points", corners}};
+}
+
+std::string problem_of(const json& obstacle) {
+  return testing::message_at(parse(with_one(obstacle)), "/obstacles/0");
+}
+
+TEST(ThinSolids, AreNoThickBlocksWhateverTheAngleOfTheirCorners) {
+  // A corner of 80 degrees is 1 spacing thick 0.18 spacings from its tip.
+  for (const double skew : {1, 3, 5, 6, 8, 10, 15, 30, 45}) {
+    for (const double spacing : {0.05, 0.04, 0.03, 0.02}) {
+      const double lean = 0.6 * std::tan(skew * std::numbers::pi / 180);
+      json scene =
+          with_one(polygon({{1.1, 0.2}, {1.3, 0.2}, {1.3 + lean, 0.8}, {1.1 + lean, 0.8}}));
+      scene["resolution"]["spacing"] = spacing;
+      EXPECT_TRUE(parse(scene).scene) << skew << " " << spacing;
+    }
+  }
+  for (int degrees = 0; degrees < 360; degrees += 7) {
+    const double a = degrees * std::numbers::pi / 180;
+    std::vector<std::pair<double, double>> corners;
+    for (const auto& [x, y] : {std::pair(-0.3, -0.3), {0.3, -0.3}, {0.25, 0.3}, {-0.25, 0.3}}) {
+      corners.emplace_back(1.5 + x * std::cos(a) - y * std::sin(a),
+                           0.5 + x * std::sin(a) + y * std::cos(a));
+    }
+    EXPECT_TRUE(parse(with_one(polygon(corners))).scene) << "a trapezium turned by " << degrees;
+  }
+}
+
+TEST(ThinSolids, AreNoRampsForTheFloorIsBelow) {
+  for (const double slope : {2.0, 4.0, 6.0, 8.5, 10.0, 20.0, 45.0}) {
+    const double top = 0.8 * std::tan(slope * std::numbers::pi / 180);
+    if (top < 0.05) continue;  // lower than a spacing: another rule
+    EXPECT_EQ(problem_of(polygon({{1.1, 0}, {1.9, 0}, {1.9, top}})), "") << slope;
+  }
+  EXPECT_EQ(problem_of(polygon({{1.1, 0}, {1.9, 0}, {1.5, 0.06}})), "") << "a sill";
+}
+
+TEST(ThinSolids, AreNoTipsRoundWhichFluidFlows) {
+  // 2 spacings thick at 1/tan(angle/2) spacings from the tip.
+  const auto wedge = [](double degrees) {
+    const double half = 0.5 * std::tan(0.5 * degrees * std::numbers::pi / 180);
+    return polygon({{1.2, 0.5}, {1.7, 0.5 - half}, {1.7, 0.5 + half}});
+  };
+  for (const double degrees : {20, 25, 30, 45, 60})
+    EXPECT_EQ(problem_of(wedge(degrees)), "") << degrees;
+  for (const double degrees : {12, 14}) {
+    EXPECT_THAT(problem_of(wedge(degrees)), HasSubstr("does not mend it")) << degrees;
+  }
+}
+
+TEST(ThinSolids, AreRefusedWhereATipTouchesTheFloor) {
+  EXPECT_THAT(problem_of(polygon({{1.5, 0}, {1.75, 1}, {1.25, 1}})), HasSubstr("does not mend it"));
+  EXPECT_NE(problem_of(polygon({{1.5, 0}, {1.58, 0.5}, {1.5, 1}, {1.42, 0.5}})), "");
+  EXPECT_NE(problem_of({{"shape", "ellipse"}, {"center", {1.5, 0.5}}, {"semi_axes", {0.07, 0.5}}}),
+            "");
+  EXPECT_EQ(problem_of({{"shape", "circle"}, {"center", {1.5, 0.4}}, {"radius", 0.4}}), "")
+      << "where no particle comes near the point at which it touches";
+}
+
+TEST(ThinSolids, AreRefusedForTheirNecks) {
+  // A neck of 0.4 spacings in a block of 12; of 3 spacings it is thick.
+  const auto hourglass = [](double neck) {
+    return polygon(
+        {{1.2, 0}, {1.8, 0}, {1.5 + neck / 2, 0.3}, {1.8, 0.9}, {1.2, 0.9}, {1.5 - neck / 2, 0.3}});
+  };
+  const std::string message = problem_of(hourglass(0.02));
+  EXPECT_EQ(problem_of(hourglass(0.15)), "");
+  const std::string before = "lower /resolution/spacing to ";
+  const std::size_t start = message.find(before);
+  ASSERT_NE(start, std::string::npos) << message;
+  json scene = with_one(hourglass(0.02));
+  scene["resolution"]["spacing"] = std::stod(message.substr(start + before.size()));
+  EXPECT_TRUE(parse(scene).scene) << "the spacing that it names";
+}
+
+TEST(ThinSolids, AreBlocksThatTouchWithCornersOnly) {
+  json scene = base_scene();
+  scene["obstacles"] = {rectangle(1.2, 0, 0.3, 0.4), rectangle(1.5, 0.4, 0.3, 0.6)};
+  EXPECT_THAT(pointers(parse(scene)), ElementsAre("/obstacles/0", "/obstacles/1"));
+  scene["obstacles"][0] = rectangle(1.2, 0, 0.4, 0.5);
+  EXPECT_TRUE(parse(scene).scene) << "overlapping by two spacings";
+}
+
 TEST(ThinSolids, OfJobsThatWereTakenBeforeAreNoProblem) {
   EXPECT_TRUE(parse_job_scene(with_one(plate(1.4, 0)).dump()).scene);
 }
@@ -137,6 +227,29 @@ TEST(Warnings, NameSlits) {
       << "stands on the floor";
 }
 
+TEST(Warnings, NameSlitsBetweenRoundBodies) {
+  const auto circles = [](double gap) {
+    json scene = base_scene();
+    for (const double x : {1.2 - 0.26 - gap / 2, 1.2 + 0.26 + gap / 2}) {
+      scene["obstacles"].push_back({{"shape", "circle"}, {"center", {x, 0.5}}, {"radius", 0.26}});
+    }
+    return scene;
+  };
+  EXPECT_THAT(warned(circles(0.05)), ElementsAre("/obstacles/0", "/obstacles/1"));
+  EXPECT_THAT(warning_at(circles(0.05), "/obstacles/0"), HasSubstr("m, 1 spacings"));
+  EXPECT_THAT(warned(circles(0.1)), IsEmpty());
+}
+
+TEST(Warnings, TakeNoCornerBelowALeaningSideForASlit) {
+  for (const double degrees : {2, 5, 10, 20}) {
+    const double lean = 0.6 * std::tan(degrees * std::numbers::pi / 180);
+    EXPECT_THAT(
+        warned(with_one(polygon({{1.1, 0}, {1.65, 0}, {1.65 + lean, 0.6}, {1.1 + lean, 0.6}}))),
+        IsEmpty())
+        << degrees;
+  }
+}
+
 json with_sensor(const std::string& sensor) {
   json scene = with_one(rectangle(1.2, 0, 0.5, 0.6));
   scene["sensors"] = {json::parse(sensor)};
@@ -159,6 +272,22 @@ TEST(Warnings, NameSensorsWhereNoFluidCanBe) {
   EXPECT_THAT(warned(full), IsEmpty()) << "above the obstacle";
   full["obstacles"][0]["size"][1] = 1;
   EXPECT_THAT(warned(full), ElementsAre("/sensors/0/x"));
+}
+
+TEST(Warnings, NameSensorsBetweenABlockAndWhatItTouches) {
+  json scene = base_scene();
+  scene["obstacles"] = {rectangle(1.1, 0, 0.3, 0.5), rectangle(1.4, 0, 0.6, 0.5)};
+  scene["sensors"] = {{{"kind", "pressure"}, {"name", "s"}, {"interval", 0.01}}};
+  for (const json& place : {json{1.4, 0.3}, {1.25, 0}, {2, 0.25}, {1.4, 0}}) {
+    scene["sensors"][0]["position"] = place;
+    EXPECT_THAT(warned(scene), ElementsAre("/sensors/0/position")) << place;
+  }
+  for (const json& place : {json{1.4, 0.5}, {1.1, 0}, {2, 0.5}}) {
+    scene["sensors"][0]["position"] = place;
+    EXPECT_THAT(warned(scene), IsEmpty()) << place;
+  }
+  scene["sensors"][0]["position"] = {1.4, 0.3};
+  EXPECT_THAT(warning_at(scene, "/sensors/0/position"), HasSubstr("0.2 m deep in an obstacle"));
 }
 
 TEST(Warnings, NameNoSensorOnAFace) {
