@@ -223,6 +223,11 @@ std::vector<bool> beside_misfits(const Scene& scene) {
         Box box = bounds(scene.obstacles[i]);
         box.min.array() -= reach;
         box.max.array() += reach;
+        const Box fluid = bounds(scene.fluid[region].shape);
+        if ((fluid.min.array() > box.max.array()).any() ||
+            (fluid.max.array() < box.min.array()).any()) {
+          continue;
+        }
         cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
           if (beside[i] || !box.contains(point)) return;
           beside[i] = std::abs(signed_distance(scene.obstacles[i], point)) < reach;

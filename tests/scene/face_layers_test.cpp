@@ -108,6 +108,25 @@ TEST(FaceLayers, HoldTheAreaOfAStripAlongARoundFace) {
   EXPECT_GT(smallest_gap(points), 0.74 * kDx);
 }
 
+TEST(FaceLayers, LieInsideAndApartAtAnyCorners) {
+  // Stars with 3 to 14 tips that are 0.1 and 0.06 m from the middle, and the same without notches.
+  for (int tips = 3; tips < 15; ++tips) {
+    for (const double notch : {0.06, 0.1}) {
+      Polygon star;
+      for (int k = 0; k < 2 * tips; ++k) {
+        const double angle = std::numbers::pi * k / tips + 0.1;
+        const double radius = k % 2 == 0 ? 0.1 : notch;
+        star.points.emplace_back(5 + radius * std::cos(angle), radius * std::sin(angle));
+      }
+      const auto points = face_layers(star, coarse(), [](const Vec& p) { return p.y() < 0; });
+      EXPECT_TRUE(points || notch < 0.1) << tips;
+      if (!points) continue;
+      EXPECT_GT(smallest_gap(*points), 0.74 * kDx) << tips;
+      for (const Vec& point : *points) EXPECT_LT(signed_distance(star, point), 0.0) << tips;
+    }
+  }
+}
+
 TEST(FaceLayers, AreOnlyMadeWhereThoseOfTwoFacesStayApart) {
   EXPECT_TRUE(face_layers(turned(box(0, 0, 0.2, 0.05), 0.4), coarse(), nothing_covered));
   EXPECT_FALSE(face_layers(turned(box(0, 0, 0.2, 0.049), 0.4), coarse(), nothing_covered));
