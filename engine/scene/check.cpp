@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "engine/scene/check_regions.hpp"
 #include "engine/scene/check_shapes.hpp"
 #include "engine/scene/check_solids.hpp"
 #include "engine/scene/describe.hpp"
@@ -252,6 +253,7 @@ void check(const Document& document, const CheckedAs& as, Problems& problems, Pr
   if (as.origin != SceneOrigin::user || !problems.empty()) return;
   check_solids(scene, problems, warnings);
   check_sensor_places(scene, warnings);
+  warn_of_gaps(scene, warnings);
   warn_of_growth(scene, warnings);
   warn_of_slow_sound(scene, warnings);
   warn_of_short_intervals(scene, warnings);

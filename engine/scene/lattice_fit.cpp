@@ -21,7 +21,20 @@ constexpr double kAreaOff = 0.005;
 struct Facing {
   double distance;
   bool along_lattice;  ///< the face is horizontal or vertical
+  bool backed = true;  ///< dummy particles stand dx/2 behind it and dx apart
 };
+
+bool is_whole(double cells) { return std::abs(cells - std::round(cells)) < kOff; }
+
+/// Whether a rectangle's cells, stretched to fit, are about as large as the fluid's. Each of its
+/// dummy particles has a full mass, whatever the size of its cell.
+bool has_full_cells(const Rectangle& solid, double dx) {
+  const auto fits = [dx](double length) {
+    const double cells = static_cast<double>(whole_cells(length, dx));
+    return std::abs(cells * dx / length - 1.0) <= kAreaOff;
+  };
+  return fits(solid.size.x()) && fits(solid.size.y());
+}
 
 void face_outline(const std::vector<Vec>& points, const Vec& point, double dx,
                   std::vector<Facing>& found) {
@@ -33,8 +46,11 @@ void face_outline(const std::vector<Vec>& points, const Vec& point, double dx,
     // One beside a corner faces none of its edges.
     if (along < 0.0 || along > length) continue;
     const Vec apart = point - a - along / length * edge;
-    const bool straight = std::abs(edge.x()) < 1e-9 * length || std::abs(edge.y()) < 1e-9 * length;
-    found.push_back({apart.norm() / dx, straight});
+    const bool upright = std::abs(edge.x()) < 1e-9 * length;
+    const bool level = std::abs(edge.y()) < 1e-9 * length;
+    // A polygon's dummy particles lie on the origin's lattice.
+    const bool backed = (upright && is_whole(a.x() / dx)) || (level && is_whole(a.y() / dx));
+    found.push_back({apart.norm() / dx, upright || level, backed});
   }
 }
 
@@ -45,7 +61,10 @@ struct FacesSeenFrom {
 
   std::vector<Facing> operator()(const Rectangle& s) const {
     const Vec across(s.size.x(), 0.0);
-    return outline({s.corner, s.corner + across, s.corner + s.size, s.corner + s.size - across});
+    std::vector<Facing> found =
+        outline({s.corner, s.corner + across, s.corner + s.size, s.corner + s.size - across});
+    for (Facing& face : found) face.backed = has_full_cells(s, dx);
+    return found;
   }
   std::vector<Facing> operator()(const Polygon& s) const { return outline(s.points); }
   std::vector<Facing> operator()(const Circle& s) const { return round(s); }
@@ -116,9 +135,11 @@ class FitCheck {
   void judge(const Facing& face, const Vec& point, std::string_view what) {
     if (face.distance > 1.0 + kOff) return;
     touches_ = true;
-    if (reason_ || (face.along_lattice && std::abs(face.distance - 0.5) < kOff)) return;
-    reason_ = fmt::format("the lattice does not fit {} at ({:.6g}, {:.6g}) m", what, point.x(),
-                          point.y());
+    if (reason_) return;
+    const bool met = face.along_lattice && std::abs(face.distance - 0.5) < kOff;
+    if (met && face.backed) return;
+    reason_ = fmt::format("the lattice does not fit {}{} at ({:.6g}, {:.6g}) m",
+                          met ? "the particles in " : "", what, point.x(), point.y());
   }
 
   [[nodiscard]] Vec phase(std::size_t region) const {
@@ -187,6 +208,34 @@ std::vector<Body> bodies(const Scene& scene) {
 
 std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body) {
   return FitCheck(scene, body).misfit();
+}
+
+std::vector<bool> beside_misfits(const Scene& scene) {
+  const double reach = 1.5 * scene.method.spacing;
+  std::vector<bool> beside(scene.obstacles.size());
+  if (beside.empty()) return beside;
+  for (const Body& body : bodies(scene)) {
+    if (!lattice_misfit(scene, body)) continue;
+    for (const std::size_t region : body) {
+      const CellSet cells(scene.fluid[region].shape, scene.method.spacing, CellFit::exact_spacing);
+      for (std::size_t i = 0; i < beside.size(); ++i) {
+        if (beside[i]) continue;
+        Box box = bounds(scene.obstacles[i]);
+        box.min.array() -= reach;
+        box.max.array() += reach;
+        const Box fluid = bounds(scene.fluid[region].shape);
+        if ((fluid.min.array() > box.max.array()).any() ||
+            (fluid.max.array() < box.min.array()).any()) {
+          continue;
+        }
+        cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+          if (beside[i] || !box.contains(point)) return;
+          beside[i] = std::abs(signed_distance(scene.obstacles[i], point)) < reach;
+        });
+      }
+    }
+  }
+  return beside;
 }
 
 }  // namespace sluice

@@ -25,7 +25,9 @@ namespace sluice {
 /// All that stands in the tank at the start: the obstacles, then the gate.
 [[nodiscard]] std::vector<Shape> solid_bodies(const Scene& scene);
 
-/// All dummy particles of a scene, m: the tank's, then those of its solid bodies. No fluid is made.
+/// All dummy particles of a scene, m: the tank's, then those of its solid bodies, which are those
+/// of obstacle_walls() but for polygons that fluid touches whose lattice does not fit it: theirs
+/// are face_layers(). No fluid is made.
 [[nodiscard]] std::vector<Vec> scene_walls(const Scene& scene);
 
 /// Dummy particles of obstacles, m: at the cell centres of each, from a cell size stretched to fit

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -373,6 +374,32 @@ TEST(StartPlan, PacksWhatTheLatticeDoesNotFitToItsArea) {
     EXPECT_LT(made.packing->residual, 1e-3) << i;
     EXPECT_GT(smallest_distance(positions(made.state.particles)), 0.7 * 0.05) << i;
     ++i;
+  }
+}
+
+TEST(StartPlan, AsksWhetherTheParticlesInABedGoOnWithTheLattice) {
+  // Fluid half a spacing above a bed between the walls, three spacings of 0.05 m high or 2.75.
+  const auto bed = [](double height, const std::string& shape) {
+    json text = base_scene();
+    text["fluid"] = {rectangle(0, height, 2, 0.5)};
+    text["obstacles"] = {rectangle(0, 0, 2, height)};
+    if (shape == "polygon") {
+      const json points = {{0, 0}, {2, 0}, {2, height}, {0, height}};
+      text["obstacles"] = {{{"shape", "polygon"}, {"points", points}}};
+    }
+    return parsed(text);
+  };
+  for (const std::string shape : {"rectangle", "polygon"}) {
+    EXPECT_FALSE(start_plan(bed(0.15, shape)).packed) << shape;
+    const Scene off = bed(0.1375, shape);
+    EXPECT_THAT(start_plan(off).reason, HasSubstr("the particles in an obstacle")) << shape;
+    // Rows of forty at half a spacing, one and a half and two and a half below its face.
+    std::map<long, int> rows;
+    for (const Vec& wall : scene_walls(off)) {
+      if (wall.y() < 0 || wall.y() > 0.1375 || wall.x() < 0 || wall.x() > 2) continue;
+      ++rows[std::lround(1e4 * (0.1375 - wall.y()))];
+    }
+    EXPECT_EQ(rows, (std::map<long, int>{{250, 40}, {750, 40}, {1250, 40}})) << shape;
   }
 }
 

@@ -308,6 +308,24 @@ TEST(Warnings, NameIntervalsShorterThanAStepOnce) {
   EXPECT_THAT(warning_at(scene, "/sensors/0/interval"), HasSubstr("as with 1 more"));
 }
 
+TEST(Warnings, NameAGapBetweenRegionsBelowASpacing) {
+  json scene = base_scene();
+  const auto with_gap = [&](double gap) {
+    scene["fluid"] = {rectangle(0, 0, 1, 0.5), rectangle(1 + gap, 0, 0.5, 0.5)};
+    return warned(scene);
+  };
+  EXPECT_THAT(with_gap(0.02), ElementsAre("/fluid/1"));
+  EXPECT_THAT(warning_at(scene, "/fluid/1"), HasSubstr("0.4 spacings, to /fluid/0"));
+  EXPECT_THAT(with_gap(0.0), IsEmpty()) << "they touch";
+  EXPECT_THAT(with_gap(0.05), IsEmpty()) << "a spacing apart";
+  scene["fluid"] = {rectangle(0, 0, 1, 0.3), rectangle(0, 0.3, 0.7, 0.2),
+                    rectangle(0.7, 0.3, 0.3, 0.2)};
+  EXPECT_THAT(warned(scene), IsEmpty()) << "corners of regions that touch";
+  scene["fluid"] = {rectangle(0, 0, 2, 0.3),
+                    {{"shape", "circle"}, {"center", {1, 0.5}}, {"radius", 0.2}}};
+  EXPECT_THAT(warned(scene), IsEmpty()) << "a drop that touches a pool";
+}
+
 TEST(Warnings, NameACourantNumberBeyondWhatAnImpactLeaves) {
   EXPECT_THAT(warned(base_scene()), IsEmpty()) << "C = 1 of the recommended scheme";
   json scene = base_scene();
