@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "engine/scene/geometry.hpp"
-#include "engine/scene/solids.hpp"
+#include "engine/scene/narrow_part.hpp"
 
 namespace sluice {
 namespace {
