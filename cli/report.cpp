@@ -79,7 +79,7 @@ void write_files(const ReportArguments& arguments, const std::filesystem::path& 
                                  arguments.output.string(), error.message()));
   }
   publish_report(folder, arguments.output, arguments.tau);
-  publish_text(arguments.output / "report.txt", formatted(arguments, folder, ReportFormat::text));
+  write_text(arguments.output / "report.txt", formatted(arguments, folder, ReportFormat::text));
 }
 
 /// A look at a job is also the time to make what its run could not leave. Who may only read the

@@ -316,6 +316,14 @@ class Folders(Sandbox):
         self.expect(0, "stability", "--quick", "still-tank", "--json", "pipe")
         json.loads(os.read(reader, 1 << 16))
         self.assertTrue((self.folder / "pipe").is_fifo())
+        self.expect(0, "run", self.write_scene(scene(**SHORT)), "--folder", "job")
+        (self.folder / "written").mkdir()
+        for name in ("report.txt", "report.html"):
+            (self.folder / "written" / name).symlink_to(f"../linked-{name}")
+        self.expect(0, "report", "job", "--output", "written")
+        for name in ("report.txt", "report.html"):
+            self.assertTrue((self.folder / "written" / name).is_symlink())
+            self.assertIn("small", (self.folder / f"linked-{name}").read_text())
 
 
 if __name__ == "__main__":
