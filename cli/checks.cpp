@@ -1,8 +1,10 @@
 #include "cli/checks.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -47,26 +49,24 @@ CLI::Validator number_check(const std::string& allowed, const std::string& descr
   });
 }
 
-enum class Thing { none, file, folder };
-
-Thing thing_at(const std::string& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return Thing::folder;
-  return fs::exists(path, ignored) ? Thing::file : Thing::none;
-}
-
 CLI::Validator path_check(bool file, bool folder, bool standard_input) {
   return {[=](std::string& text) -> std::string {
             if (standard_input && text == "-") return {};
-            const Thing thing = thing_at(text);
-            if (thing == Thing::none) {
+            const std::string name = text.empty() ? "\"\"" : text;
+            std::error_code unknown;
+            const fs::file_type type = fs::status(text, unknown).type();
+            if (type == fs::file_type::not_found) {
               return fmt::format("there is no {} {}",
                                  file && folder ? "file or folder" : (file ? "file" : "folder"),
-                                 text);
+                                 name);
             }
-            if (thing == Thing::folder && !folder) return text + " is a folder, no file";
-            if (thing == Thing::file && !file) return text + " is a file, no folder";
-            return {};
+            // In a folder that cannot be entered it may well be there.
+            if (unknown) return fmt::format("cannot look at {}: {}", name, unknown.message());
+            const bool is_folder = type == fs::file_type::directory;
+            if (is_folder && !folder) return name + " is a folder, no file";
+            if (!is_folder && !file) return name + " is a file, no folder";
+            if (::access(text.c_str(), R_OK) == 0) return {};
+            return fmt::format("cannot read {}: {}", name, std::generic_category().message(errno));
           },
           "", ""};
 }

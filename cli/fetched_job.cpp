@@ -12,6 +12,9 @@
 
 #include "cli/json_text.hpp"
 #include "cli/verbs.hpp"
+#include "engine/store/apart.hpp"
+#include "engine/store/errors.hpp"
+#include "engine/store/frame_io.hpp"
 #include "engine/store/job_folder.hpp"
 
 namespace sluice {
@@ -35,6 +38,11 @@ void write_file(const fs::path& path, const std::string& bytes) {
   throw CommandEnd(
       ExitCode::storage_failure,
       fmt::format("cannot write {}: TMPDIR can name a place with more room", path.string()));
+}
+
+/// Whether the name is one that JobPaths finds again, and leads nowhere else.
+bool is_frame_name(const std::string& name) {
+  return name.starts_with("frame-") && name.ends_with(".h5") && name.find('/') == name.npos;
 }
 
 std::vector<std::string> file_names(ServiceClient& service, const std::string& id) {
@@ -64,11 +72,25 @@ void fetch(ServiceClient& service, const std::string& id, const fs::path& folder
       write_file(path, known_outcome(service, id));
     }
   }
+  fs::create_directory(paths.frames());
+  for (const std::string& name : there) {
+    if (is_frame_name(name)) write_file(paths.frames() / name, "");
+  }
+}
+
+bool is_harmless_frame(const fs::path& path) {
+  try {
+    require_harmless(path, [&] { static_cast<void>(read_frame(path)); });
+    return true;
+  } catch (const StorageError&) {
+    return false;
+  }
 }
 
 }  // namespace
 
-FetchedJob::FetchedJob(ServiceClient& service, const std::string& id) : folder_(new_folder()) {
+FetchedJob::FetchedJob(ServiceClient& service, const std::string& id)
+    : id_(id), folder_(new_folder()) {
   try {
     fetch(service, id, folder_);
   } catch (...) {
@@ -76,6 +98,22 @@ FetchedJob::FetchedJob(ServiceClient& service, const std::string& id) : folder_(
     fs::remove_all(folder_, ignored);
     throw;
   }
+}
+
+void FetchedJob::fetch_frames(ServiceClient& service, const std::vector<fs::path>& frames) {
+  for (const fs::path& path : frames) {
+    const std::string name = path.filename().string();
+    write_file(path, service.get(job_target(id_, "/files/" + percent_encoded(name))).body);
+    if (!is_harmless_frame(path)) write_file(path, "");
+  }
+}
+
+std::string FetchedJob::in_users_words(std::string message) const {
+  const std::string name = folder_.string();
+  for (std::size_t at = 0; (at = message.find(name, at)) != message.npos; at += id_.size()) {
+    message.replace(at, name.size(), id_);
+  }
+  return message;
 }
 
 FetchedJob::~FetchedJob() {

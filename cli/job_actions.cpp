@@ -116,19 +116,32 @@ HttpReply until_checkpoint(ServiceClient& service, const std::string& id, std::u
   });
 }
 
-/// Asks on a terminal; without one, the command itself is the answer.
-bool is_confirmed(ServiceClient& service, const std::string& id) {
-  if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1) return true;
+/// Shows a question on the terminal whose answer is read, also when stderr goes elsewhere.
+void show_question(const std::string& text) {
+  if (::isatty(STDERR_FILENO) == 1) {
+    std::fputs(text.c_str(), stderr);
+    return;
+  }
+  const char* const name = ::ttyname(STDIN_FILENO);
+  std::FILE* const terminal = name == nullptr ? nullptr : std::fopen(name, "we");
+  if (terminal == nullptr) {
+    throw CommandEnd(ExitCode::usage, "cannot ask on this terminal: --yes goes without");
+  }
+  std::fputs(text.c_str(), terminal);
+  std::fclose(terminal);
+}
+
+/// Asks on a terminal; without one, the command itself is the answer. Throws CommandEnd(usage) for
+/// a no.
+void require_confirmed(ServiceClient& service, const std::string& id) {
+  if (::isatty(STDIN_FILENO) != 1) return;
   const Json shown = service.object_of(service.get(target_of(id)));
-  std::fputs(fmt::format("delete {} ({}, {}) with all its files? [y/N] ", id,
-                         text_at(shown, "name"), text_at(shown, "state"))
-                 .c_str(),
-             stderr);
+  show_question(fmt::format("delete {} ({}, {}) with all its files? [y/N] ", id,
+                            text_at(shown, "name"), text_at(shown, "state")));
   std::string answer;
   std::getline(std::cin, answer);
-  const bool yes = answer == "y" || answer == "yes";
-  if (!yes) std::fputs(fmt::format("{} stays\n", id).c_str(), stderr);
-  return yes;
+  if (answer == "y" || answer == "yes") return;
+  throw CommandEnd(ExitCode::usage, fmt::format("{} stays: it was not deleted", id));
 }
 
 void print_done(const ServiceClient& service, const HttpReply& reply, const std::string& id,
@@ -142,24 +155,48 @@ void print_done(const ServiceClient& service, const HttpReply& reply, const std:
   }
 }
 
-/// Every job is tried; the last failure tells how the verb ends.
+/// Does something for each of several words. Every one is tried; the last failure tells how the
+/// verb ends, the others are said on the way.
+class EachTried {
+ public:
+  template <class Try>
+  void operator()(const std::string& word, const Try& attempt) {
+    try {
+      attempt(word);
+    } catch (const CommandEnd& end) {
+      if (failure_) std::fputs(fmt::format("sluice: {}\n", failure_->what()).c_str(), stderr);
+      failure_ = end;
+    }
+  }
+  void end() const {
+    if (failure_) throw *failure_;
+  }
+
+ private:
+  std::optional<CommandEnd> failure_;
+};
+
+/// All names are looked up before anything is done: `last` is another job once the last is deleted.
 void act(const ActionArguments& arguments, const Action& action) {
   ServiceClient service(arguments.service);
-  std::optional<CommandEnd> failure;
+  EachTried each;
+  std::vector<std::string> ids;
   for (const std::string& word : arguments.ids) {
-    try {
-      const std::string id = job_or_study_named(service, word);
-      if (action.asks && !arguments.yes && !is_confirmed(service, id)) continue;
+    each(word, [&](const std::string& name) {
+      std::string id = job_or_study_named(service, name);
+      if (std::ranges::find(ids, id) == ids.end()) ids.push_back(std::move(id));
+    });
+  }
+  for (const std::string& one : ids) {
+    each(one, [&](const std::string& id) {
+      if (action.asks && !arguments.yes) require_confirmed(service, id);
       const std::uint64_t known = arguments.wait ? newest_checkpoint(service, id) : 0;
       HttpReply reply = service.ask(action.make_request(id, arguments));
       if (arguments.wait) reply = action.wait(service, id, known);
       print_done(service, reply, id, arguments);
-    } catch (const CommandEnd& end) {
-      if (failure) std::fputs(fmt::format("sluice: {}\n", failure->what()).c_str(), stderr);
-      failure = end;
-    }
+    });
   }
-  if (failure) throw *failure;
+  each.end();
 }
 
 void add_action(CLI::App& app, const char* name, const char* help, const Action& action) {

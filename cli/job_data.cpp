@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "cli/checks.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/scene/parse.hpp"
@@ -15,6 +16,14 @@
 #include "engine/study/report.hpp"
 
 namespace sluice {
+
+void require_folder(const std::string& word) {
+  std::string path = word;
+  const std::string wrong = existing_folder()(path);
+  if (wrong.empty()) return;
+  throw CommandEnd(ExitCode::usage,
+                   fmt::format("{}; for a job of a service, add --server URL", wrong));
+}
 
 JobData::JobData(const std::filesystem::path& folder) : paths_(folder) {
   if (JobFolder::holds_job(folder)) return;
@@ -55,7 +64,7 @@ const Series& find_series(const std::vector<Series>& all, const std::string& nam
     if (series.name == name) return series;
     names.push_back(series.name);
   }
-  throw CommandEnd(ExitCode::usage,
+  throw CommandEnd(ClientExit::not_found,
                    fmt::format("there is no sensor {}: {}", name, hint(name, names)));
 }
 

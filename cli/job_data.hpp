@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "engine/scene/scene.hpp"
@@ -27,7 +28,11 @@ class JobData {
   JobPaths paths_;
 };
 
-/// The series of this name; throws CommandEnd(usage) with the nearest names.
+/// Throws CommandEnd(usage) for a word of a verb that also takes ids when it is no folder that can
+/// be read.
+void require_folder(const std::string& word);
+
+/// The series of this name; throws CommandEnd(not_found) with the nearest names.
 [[nodiscard]] const Series& find_series(const std::vector<Series>& all, const std::string& name);
 
 }  // namespace sluice

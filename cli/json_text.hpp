@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/ladder/markup.hpp"
+
 namespace sluice {
 
 // Reading what a server sent: nothing here trusts its form, and no text of it moves a terminal's
@@ -19,10 +21,6 @@ namespace sluice {
                                               std::string_view key);
 /// The member as a whole number in full; "?" when it is none.
 [[nodiscard]] std::string count_at(const nlohmann::ordered_json& object, std::string_view key);
-
-/// UTF-8 with each character as '?' that a terminal obeys rather than shows: controls, and what
-/// turns the direction of a line.
-[[nodiscard]] std::string printable(std::string_view text);
 
 /// A size as "12.3 MiB"; "unknown" without one.
 [[nodiscard]] std::string size_text(const std::optional<double>& bytes);

@@ -28,11 +28,11 @@ namespace sluice {
 namespace {
 
 // Verbs in the order of the help.
-constexpr std::array kVerbs{&add_run,    &add_validate, &add_plan,   &add_inspect,    &add_sensors,
-                            &add_export, &add_report,   &add_study,  &add_stability,  &add_serve,
-                            &add_submit, &add_list,     &add_show,   &add_watch,      &add_pause,
-                            &add_resume, &add_cancel,   &add_delete, &add_checkpoint, &add_help,
-                            &add_version};
+constexpr std::array kVerbs{
+    &add_run,        &add_validate, &add_plan,      &add_inspect,   &add_sensors, &add_export,
+    &add_report,     &add_study,    &add_stability, &add_serve,     &add_submit,  &add_list,
+    &add_show,       &add_watch,    &add_pause,     &add_resume,    &add_cancel,  &add_delete,
+    &add_checkpoint, &add_help,     &add_version,   &add_completion};
 
 int fail(int code, std::string_view message) {
   if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);
@@ -57,7 +57,11 @@ int flushed(int code) {
 }
 
 /// SLUICE_SIMD speaks for the whole program and, through its environment, for all that it starts.
-void take_default_simd_target() {
+/// Who only asks what the program is or can do is answered all the same.
+void take_default_simd_target(const CLI::App& app) {
+  for (const char* const verb : {"help", "version", "completion"}) {
+    if (app.got_subcommand(verb)) return;
+  }
   const char* const wanted = std::getenv("SLUICE_SIMD");
   if (wanted == nullptr || *wanted == '\0') return;
   try {
@@ -73,7 +77,6 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
       const std::string message = unknown_verb(app, argv[1]);
       if (!message.empty()) throw CommandEnd(ExitCode::usage, message);
     }
-    take_default_simd_target();
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& help_or_version) {
@@ -127,5 +130,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Example: sluice run dambreak-quick.json");
   for (const auto add_verb : sluice::kVerbs) add_verb(app);
+  app.parse_complete_callback([&app] { sluice::take_default_simd_target(app); });
   return sluice::flushed(sluice::parse_and_run(app, argc, argv));
 }

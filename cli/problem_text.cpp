@@ -51,6 +51,8 @@ CommandEnd end_for(int status, const Json& problem, const std::string& message) 
   if (scene && !names_a_parameter(problem)) return CommandEnd(ExitCode::invalid_scene, message);
   if (status == 401 || status == 403) return CommandEnd(ClientExit::refused, message);
   if (status == 404) return CommandEnd(ClientExit::not_found, message);
+  // As for a folder: another option, not another state, is what it takes.
+  if (slug == "not-dimensionless") return CommandEnd(ExitCode::usage, message);
   if (status == 409) return CommandEnd(ClientExit::wrong_state, message);
   if (status >= 500) return CommandEnd(ClientExit::service_failed, message);
   return CommandEnd(ExitCode::usage, message);
@@ -71,6 +73,8 @@ std::string message_of(const Json& problem, const ProblemContext& context) {
     return fmt::format("{} is no valid {}: {} problem{}", context.subject,
                        slug == "invalid-scene" ? "scene" : "study", count, count == 1 ? "" : "s");
   }
+  if (slug == "no-such-sensor") return detail;  // its title says the same
+  if (slug == "not-dimensionless") return "--dimensionless: " + detail;
   return fmt::format("{}: {}", text_at(problem, "title"), detail);
 }
 

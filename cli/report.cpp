@@ -7,15 +7,18 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/checks.hpp"
 #include "cli/fetched_job.hpp"
+#include "cli/job_data.hpp"
 #include "cli/job_names.hpp"
 #include "cli/service_client.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/errors.hpp"
 #include "engine/store/publish.hpp"
 #include "engine/study/animation.hpp"
+#include "engine/study/snapshots.hpp"
 
 namespace sluice {
 namespace {
@@ -55,7 +58,7 @@ std::string formatted(const ReportArguments& arguments, const std::filesystem::p
       throw CommandEnd(ExitCode::usage,
                        fmt::format("{} has no snapshots to show: its scene has no key "
                                    "output.frames, or it did not run yet",
-                                   folder.string()));
+                                   arguments.target));
     case ReportFormat::svg:
       if (std::string sheet = report_svg(report); !sheet.empty()) return sheet;
       throw CommandEnd(ExitCode::usage,
@@ -76,7 +79,7 @@ void write_files(const ReportArguments& arguments, const std::filesystem::path& 
                                  arguments.output.string(), error.message()));
   }
   publish_report(folder, arguments.output, arguments.tau);
-  publish_text(arguments.output / "report.txt", formatted(arguments, folder, ReportFormat::text));
+  write_text(arguments.output / "report.txt", formatted(arguments, folder, ReportFormat::text));
 }
 
 /// A look at a job is also the time to make what its run could not leave. Who may only read the
@@ -88,12 +91,40 @@ void leave_missing_report(const std::filesystem::path& folder) {
   }
 }
 
+ReportFormat format_of(const ReportArguments& arguments) {
+  return arguments.json ? ReportFormat::json : arguments.format;
+}
+
 void report_folder(const ReportArguments& arguments, const std::filesystem::path& folder) {
-  const ReportFormat format = arguments.json ? ReportFormat::json : arguments.format;
-  const std::string shown = formatted(arguments, folder, format);
+  const std::string shown = formatted(arguments, folder, format_of(arguments));
   leave_missing_report(folder);
   if (!arguments.output.empty()) write_files(arguments, folder);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
+}
+
+/// The snapshots that the report shows.
+std::vector<std::filesystem::path> frames_shown(const ReportArguments& arguments,
+                                                const std::filesystem::path& folder) {
+  const ReportFormat format = format_of(arguments);
+  const bool page = format == ReportFormat::html || !arguments.output.empty();
+  std::vector<std::filesystem::path> frames;
+  if (format == ReportFormat::apng) frames = spread_files(folder, kMostAnimated);
+  if (format != ReportFormat::apng && !page) return frames;
+  // An animation has the colours of the page's pictures.
+  const auto pictures = picture_files(folder, report_of_folder(folder, arguments.tau));
+  frames.insert(frames.end(), pictures.begin(), pictures.end());
+  return frames;
+}
+
+void report_of_service(const ReportArguments& arguments) {
+  ServiceClient service(arguments.service);
+  FetchedJob job(service, job_named(service, arguments.target));
+  try {
+    job.fetch_frames(service, frames_shown(arguments, job.folder()));
+    report_folder(arguments, job.folder());
+  } catch (const StorageError& error) {
+    throw StorageError(error.fault(), job.in_users_words(error.what()));
+  }
 }
 
 void report(ReportArguments arguments) {
@@ -104,11 +135,10 @@ void report(ReportArguments arguments) {
                                  arguments.tau, kComparisonTau));
   }
   if (!is_of_service(arguments.service, arguments.of_service, arguments.target)) {
+    require_folder(arguments.target);
     return report_folder(arguments, arguments.target);
   }
-  ServiceClient service(arguments.service);
-  const FetchedJob job(service, job_named(service, arguments.target));
-  report_folder(arguments, job.folder());
+  report_of_service(arguments);
 }
 
 }  // namespace

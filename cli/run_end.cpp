@@ -9,6 +9,7 @@
 
 #include "cli/shell_word.hpp"
 #include "engine/run/insist.hpp"
+#include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 #include "engine/study/report.hpp"
 
@@ -21,17 +22,18 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kLargestOutcome = 1 << 20;
 
-/// What it says of a run that was complete before, whose account is that of the attempt that
-/// completed it.
-std::string complete_text(const JobFolder& folder, const std::string& earlier) {
+std::string complete_text(const JobFolder& folder, const Outcome& outcome) {
+  return fmt::format("{} is complete already: step {}, t = {:.6g} s; nothing was run\n",
+                     folder.name().string(), outcome.step, outcome.time);
+}
+
+/// What a run's account was that was complete before: that of the attempt that completed it.
+std::string earlier_account(const std::string& earlier) {
   const Json outcome = Json::parse(earlier);
   const Json& attempt = outcome.at("this_attempt");
-  return fmt::format(
-      "{} is complete already: step {}, t = {:.6g} s; nothing was run\n"
-      "  its last attempt: {} steps in {:.2f} s, {} threads, {}\n",
-      folder.name().string(), outcome.value("step", std::uint64_t{0}), outcome.value("time", 0.0),
-      attempt.value("steps", std::uint64_t{0}), attempt.value("seconds", 0.0),
-      outcome.value("threads", 1), outcome.value("simd_target", ""));
+  return fmt::format("  its last attempt: {} steps in {:.2f} s, {} threads, {}\n",
+                     attempt.value("steps", std::uint64_t{0}), attempt.value("seconds", 0.0),
+                     outcome.value("threads", 1), outcome.value("simd_target", ""));
 }
 
 }  // namespace
@@ -50,13 +52,15 @@ std::string completed_outcome(const JobFolder& folder, const Scene& scene) {
 
 std::string closing_text(JobFolder& folder, const Outcome& outcome, const std::string& earlier) {
   const bool nothing_done = outcome.exit_code == ExitCode::done && outcome.account.steps == 0;
-  if (!nothing_done || earlier.empty()) return summary_text(outcome);
+  if (!nothing_done) return summary_text(outcome);
+  std::string text = complete_text(folder, outcome);
+  if (earlier.empty()) return text;
   try {
-    const std::string text = complete_text(folder, earlier);
+    const std::string account = earlier_account(earlier);
     folder.publish_text(folder.paths().outcome(), earlier);
-    return text;
+    return text + account;
   } catch (const std::exception&) {  // a full disk, or an outcome of another form
-    return summary_text(outcome);
+    return text;
   }
 }
 
@@ -67,6 +71,11 @@ std::string next_commands(const JobFolder& folder, const Scene& scene, const Out
   // A numerical failure would only come again.
   const bool can_go_on =
       outcome.exit_code == ExitCode::checkpointed || outcome.exit_code == ExitCode::storage_failure;
+  std::error_code ignored;
+  const bool has_scene = fs::exists(folder.paths().scene(), ignored);
+  if (can_go_on && !has_scene) {
+    text += "  scene.json was removed meanwhile: put the scene of this run back under that name\n";
+  }
   if (can_go_on) text += fmt::format("  to go on:   sluice run {}\n", shell_path(root));
   const auto checkpoints = folder.paths().checkpoints();
   if (!checkpoints.empty()) {
@@ -87,14 +96,15 @@ void leave_report(const JobFolder& folder, const Outcome& outcome, double patien
     folder.require_held();
     insist(
         patience, [&] { publish_report(folder.paths().root(), folder.paths().root()); },
-        [](const StorageError& error, double wait) {
-          std::fputs(
-              fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait, error.what())
-                  .c_str(),
-              stderr);
+        [&folder](const StorageError& error, double wait) {
+          std::fputs(fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait,
+                                 told_outside(folder.name(), error).what())
+                         .c_str(),
+                     stderr);
         });
   } catch (const std::exception& error) {
-    std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n", error.what(),
+    std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n",
+                           told_outside(folder.name(), std::string(error.what())),
                            shell_path(folder.name()))
                    .c_str(),
                stderr);

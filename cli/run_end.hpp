@@ -13,8 +13,8 @@ namespace sluice {
 /// The outcome.json of a run that reached the scene's end; empty when there is none.
 [[nodiscard]] std::string completed_outcome(const JobFolder& folder, const Scene& scene);
 
-/// The account of this run. One that had nothing left to do after `earlier`, which is what
-/// completed_outcome gave before, keeps that outcome, and is told by it.
+/// The account of this run. One that had nothing left to do says so; where `earlier` is what
+/// completed_outcome gave before, it keeps that outcome and tells its account.
 [[nodiscard]] std::string closing_text(JobFolder& folder, const Outcome& outcome,
                                        const std::string& earlier);
 

@@ -32,8 +32,11 @@ std::string read_stdin(std::size_t limit) {
 void require_scene(const ParseResult& result, const std::filesystem::path& where) {
   if (result.scene) return;
   for (const Problem& problem : result.problems) {
-    fmt::print(stderr, "{}: {}: {}\n", where.string(),
-               problem.pointer.empty() ? "(the whole scene)" : problem.pointer, problem.message);
+    std::fputs(fmt::format("{}: {}: {}\n", where.string(),
+                           problem.pointer.empty() ? "(the whole scene)" : problem.pointer,
+                           problem.message)
+                   .c_str(),
+               stderr);
   }
   const std::size_t count = result.problems.size();
   throw CommandEnd(ExitCode::invalid_scene,

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "cli/checks.hpp"
 #include "cli/job_data.hpp"
@@ -167,7 +168,25 @@ void list_sensors(const std::vector<Series>& all, Format format) {
   if (format == Format::json) fmt::print("{}\n", list.dump(2));
 }
 
+/// What belongs to one series says nothing about the list of all.
+void require_name(const SensorArguments& arguments) {
+  if (!arguments.name.empty()) return;
+  const auto belongs = [](bool given, std::string_view option) {
+    if (!given) return;
+    throw CommandEnd(
+        ExitCode::usage,
+        fmt::format("{} goes with the name of a sensor; without it all are listed", option));
+  };
+  belongs(arguments.filter == FilterKind::gaussian, "--filter");
+  belongs(arguments.tau.has_value(), "--tau");
+  belongs(arguments.dimensionless, "--dimensionless");
+  belongs(arguments.from.has_value(), "--from");
+  belongs(arguments.to.has_value(), "--to");
+  belongs(arguments.max_points.has_value(), "--max-points");
+}
+
 void require_sense(const SensorArguments& arguments) {
+  require_name(arguments);
   const bool gaussian = arguments.filter == FilterKind::gaussian;
   if (gaussian && !arguments.tau) {
     throw CommandEnd(ExitCode::usage,
@@ -177,17 +196,8 @@ void require_sense(const SensorArguments& arguments) {
   if (!gaussian && arguments.tau) {
     throw CommandEnd(ExitCode::usage, "--tau goes with --filter gaussian");
   }
-  if (gaussian && !std::isfinite(*arguments.tau)) {
-    throw CommandEnd(ExitCode::usage,
-                     fmt::format("--tau is {}, but must be a number of seconds", *arguments.tau));
-  }
-}
-
-void require_folder(const SensorArguments& arguments) {
-  if (!std::filesystem::is_directory(arguments.target)) {
-    throw CommandEnd(ExitCode::usage,
-                     fmt::format("there is no folder {}; for a job of a service, add --server URL",
-                                 arguments.target));
+  if (arguments.from && arguments.to && *arguments.from > *arguments.to) {
+    throw CommandEnd(ExitCode::usage, "--from must not be later than --to");
   }
 }
 
@@ -196,7 +206,7 @@ void show_sensors(SensorArguments arguments) {
   if (is_of_service(arguments.service, arguments.of_service, arguments.target)) {
     return show_service_sensors(arguments);
   }
-  require_folder(arguments);
+  require_folder(arguments.target);
   const JobData job(arguments.target);
   const std::vector<Series> all = job.series();
   if (arguments.name.empty()) return list_sensors(all, arguments.format);
@@ -221,13 +231,17 @@ void add_sensors(CLI::App& app) {
                                                   {"gaussian", FilterKind::gaussian}};
   verb->add_option("--filter", arguments->filter, "Low-pass filter in time (eq. 12)")
       ->transform(one_of(filters));
-  verb->add_option("--tau", arguments->tau, "Its smoothing time, s")->check(number_above_zero());
+  verb->add_option("--tau", arguments->tau, "Its smoothing time, s")
+      ->check(number_above_zero())
+      ->check(number_between(1e-9, 1e6));
   verb->add_flag("--dimensionless", arguments->dimensionless,
                  "T, X, H and P of eqs. 19-22 by the scene's scales");
   const std::map<std::string, Format> formats{{"csv", Format::csv}, {"json", Format::json}};
-  verb->add_option("--format", arguments->format, "csv by default")->transform(one_of(formats));
+  CLI::Option* format =
+      verb->add_option("--format", arguments->format, "csv by default")->transform(one_of(formats));
   verb->add_flag_callback(
-      "--json", [arguments] { arguments->format = Format::json; }, "The same as --format json");
+          "--json", [arguments] { arguments->format = Format::json; }, "The same as --format json")
+      ->excludes(format);
   add_service_sensor_options(*verb, *arguments);
   verb->footer(
       "Example: sluice sensors dambreak-quick P1 --filter gaussian --tau 0.002\n"

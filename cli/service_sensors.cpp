@@ -14,6 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kFarthest = 1e9;  // s; what a service takes, and so a folder too
+
 std::string series_target(const std::string& id, const SensorArguments& arguments) {
   std::string query = fmt::format("?format={}", arguments.format == Format::csv ? "csv" : "json");
   const auto add = [&query](std::string_view name, const auto& value) {
@@ -60,8 +62,14 @@ void print_list(const Json& list) {
 void add_service_sensor_options(CLI::App& verb, SensorArguments& arguments) {
   const std::string group = "Part of a series";
   add_service_switch(verb, arguments.service, arguments.of_service);
-  verb.add_option("--from", arguments.from, "First time, s")->check(any_number())->group(group);
-  verb.add_option("--to", arguments.to, "Last time, s")->check(any_number())->group(group);
+  verb.add_option("--from", arguments.from, "First time, s")
+      ->check(any_number())
+      ->check(number_between(-kFarthest, kFarthest))
+      ->group(group);
+  verb.add_option("--to", arguments.to, "Last time, s")
+      ->check(any_number())
+      ->check(number_between(-kFarthest, kFarthest))
+      ->group(group);
   verb.add_option("--max-points", arguments.max_points,
                   "Samples at most, 20000 of a service by default and all of a folder; fewer than "
                   "there are "

@@ -90,7 +90,7 @@ nlohmann::ordered_json chosen_scheme(const std::string& name) {
 }
 
 void write_if_asked(const fs::path& path, const std::string& text) {
-  if (!path.empty()) publish_text(path, text);
+  if (!path.empty()) write_text(path, text);
 }
 
 void run_suite(const StabilityArguments& arguments) {

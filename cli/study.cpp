@@ -46,15 +46,19 @@ std::string load_scene(const std::string& name, const void* context) {
 }
 
 StudyPlan read_study(const fs::path& file) {
-  if (!fs::is_regular_file(file)) {
-    throw CommandEnd(ExitCode::usage, fmt::format("there is no study file {}", file.string()));
+  std::string path = file.string();
+  if (const std::string wrong = existing_file()(path); !wrong.empty()) {
+    throw CommandEnd(ExitCode::usage, wrong);
   }
   const fs::path beside = file.parent_path();
   StudyPlan plan = plan_study(read_text(file, kMaxSceneBytes + 1), &load_scene, &beside);
   if (plan.problems.empty()) return plan;
   for (const Problem& problem : plan.problems) {
-    fmt::print(stderr, "{}: {}: {}\n", file.string(),
-               problem.pointer.empty() ? "(the whole study)" : problem.pointer, problem.message);
+    std::fputs(fmt::format("{}: {}: {}\n", file.string(),
+                           problem.pointer.empty() ? "(the whole study)" : problem.pointer,
+                           problem.message)
+                   .c_str(),
+               stderr);
   }
   const std::size_t count = plan.problems.size();
   throw CommandEnd(ExitCode::invalid_scene,
@@ -68,8 +72,10 @@ void print_warnings(const fs::path& file, const std::vector<StudyRun>& runs) {
   for (const StudyRun& run : runs) {
     for (const Problem& warning : run.warnings) {
       if (!told.emplace(warning.pointer, warning.message).second) continue;
-      fmt::print(stderr, "{}: warning: run {}: {}: {}\n", file.string(), run.name, warning.pointer,
-                 warning.message);
+      std::fputs(fmt::format("{}: warning: run {}: {}: {}\n", file.string(), run.name,
+                             warning.pointer, warning.message)
+                     .c_str(),
+                 stderr);
     }
   }
 }
@@ -244,6 +250,19 @@ void study_by_service(const StudyArguments& arguments) {
   submit_study(options, whole_document(arguments), arguments.study);
 }
 
+/// Does `action`, which stands in the folder `root`, and tells its errors to those who do not.
+template <class Action>
+auto told_from(const fs::path& root, const Action& action) {
+  try {
+    return action();
+  } catch (const StorageError& error) {
+    throw told_outside(root, error);
+  } catch (const CommandEnd& end) {
+    throw CommandEnd(static_cast<ExitCode>(end.code()),
+                     told_outside(root, std::string(end.what())));
+  }
+}
+
 void study(StudyArguments arguments) {
   ServiceStudy& service = arguments.service;
   if (is_of_service(service.service, service.of_service, arguments.study)) {
@@ -269,10 +288,13 @@ void study(StudyArguments arguments) {
     const int cores = arguments.cores > 0
                           ? arguments.cores
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    finished = StudyRunner(plan, folder, cores, pool).run_all();
+    finished = told_from(root, [&] { return StudyRunner(plan, folder, cores, pool).run_all(); });
   }
-  const StudyResult result = folder.read(plan);
-  folder.publish(result);
+  const StudyResult result = told_from(root, [&] {
+    StudyResult rows = folder.read(plan);
+    folder.publish(rows);
+    return rows;
+  });
   const std::string shown = arguments.json ? study_json(result).dump(2) + "\n" : study_text(result);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
   if (!finished) throw CommandEnd(ExitCode::checkpointed);

@@ -41,9 +41,20 @@ std::string meaning(const CLI::App* verb, const std::string& name) {
   return ": " + text;
 }
 
+std::vector<std::string> words_left(const CLI::App& app, const CLI::App* verb) {
+  return verb == nullptr ? app.remaining() : verb->remaining();
+}
+
+/// An option that there is not is the first mistake, whatever is wrong because of it.
+bool has_unknown_option(const std::vector<std::string>& left) {
+  return std::ranges::any_of(left,
+                             [](const auto& word) { return word.size() > 1 && word[0] == '-'; });
+}
+
 std::string unexpected(const CLI::App& app, const CLI::App* verb) {
-  const std::vector<std::string> rest = verb == nullptr ? app.remaining() : verb->remaining();
+  std::vector<std::string> rest = words_left(app, verb);
   if (rest.empty()) return "there is something more than the verb takes";
+  std::ranges::stable_partition(rest, [](const auto& word) { return word.starts_with('-'); });
   const std::string& word = rest.front();
   if (!word.starts_with('-')) return fmt::format("\"{}\" is more than the verb takes", word);
   std::vector<std::string> names;
@@ -58,7 +69,8 @@ std::string unexpected(const CLI::App& app, const CLI::App* verb) {
 std::string plain_text(const CLI::App& app, const CLI::App* verb, const CLI::ParseError& error) {
   const std::string said = error.what();
   const std::string name = first_word(said);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(app, verb);
+  const bool more = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (more || has_unknown_option(words_left(app, verb))) return unexpected(app, verb);
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     if (verb == nullptr) return "a verb is missing, such as run";
     return fmt::format("{} is missing{}", name, meaning(verb, name));
@@ -85,14 +97,14 @@ std::string plain_text(const CLI::App& app, const CLI::App* verb, const CLI::Par
 }  // namespace
 
 std::string unknown_verb(const CLI::App& app, std::string_view word) {
-  if (word.empty() || word.front() == '-') return {};
+  if (word.starts_with('-')) return {};
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
   const std::vector<std::string_view> views(names.begin(), names.end());
   for (const std::string_view name : views) {
     if (name == word) return {};
   }
-  return fmt::format("there is no verb {}: {}", word, hint(word, views));
+  return fmt::format("there is no verb {}: {}", word.empty() ? "\"\"" : word, hint(word, views));
 }
 
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {

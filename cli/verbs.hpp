@@ -55,5 +55,6 @@ void add_delete(CLI::App& app);
 void add_stability(CLI::App& app);
 void add_help(CLI::App& app);
 void add_version(CLI::App& app);
+void add_completion(CLI::App& app);
 
 }  // namespace sluice

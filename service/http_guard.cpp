@@ -72,9 +72,13 @@ mode_t forbidden_bits(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse_token(const std::filesystem::path& path, std::string_view why) {
-  throw std::runtime_error(
-      fmt::format("token file {}: {}; make one with: (umask 077; openssl rand -hex 32 > {})",
-                  path.string(), why, path.string()));
+  throw std::runtime_error(fmt::format("token file {}: {}", path.string(), why));
+}
+
+/// Only where nothing is that the command could overwrite.
+std::string advice_to_make(const std::filesystem::path& path, int error_number) {
+  if (error_number != ENOENT) return {};
+  return fmt::format("; make one with: (umask 077; openssl rand -hex 32 > {})", path.string());
 }
 
 }  // namespace
@@ -111,13 +115,16 @@ std::optional<Response> guard(const Request& request, const GuardOptions& option
 std::string read_token_file(const std::filesystem::path& path) {
   const FileDescriptor file(
       ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY));
-  if (file.get() < 0) refuse_token(path, std::strerror(errno));
+  if (file.get() < 0) {
+    const int reason = errno;
+    refuse_token(path, std::strerror(reason) + advice_to_make(path, reason));
+  }
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
     refuse_token(path, "it is no regular file");
   }
   if ((status.st_mode & forbidden_bits(path)) != 0)
-    refuse_token(path, "others may read it: chmod 600");
+    refuse_token(path, "others may read it: chmod 600, and another token if they have");
   std::array<char, kLongestToken + 2> bytes{};
   const auto count = ::read(file.get(), bytes.data(), bytes.size());
   std::string token(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));

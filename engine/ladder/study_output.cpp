@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "engine/ladder/markup.hpp"
+
 namespace sluice {
 namespace {
 
@@ -155,8 +157,8 @@ std::vector<Table> study_tables(const StudyResult& result) {
 }
 
 std::string study_text(const StudyResult& result) {
-  std::string text = result.study.name + "\n";
-  if (!result.study.description.empty()) text += result.study.description + "\n";
+  std::string text = printable(result.study.name) + "\n";
+  if (!result.study.description.empty()) text += printable(result.study.description) + "\n";
   if (const std::string machines = machines_of(result); !machines.empty()) text += machines + "\n";
   text += "\n";
   for (const Table& table : study_tables(result)) text += table_text(table);

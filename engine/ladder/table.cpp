@@ -48,6 +48,16 @@ std::string aligned(const std::vector<std::string>& row, const std::vector<std::
   return line + "\n";
 }
 
+/// The table as a terminal may see it: names and reasons come from whoever wrote the scene.
+Table printable_table(Table table) {
+  table.title = printable(table.title);
+  for (std::string& text : table.head) text = printable(text);
+  for (auto& row : table.rows) {
+    for (std::string& text : row) text = printable(text);
+  }
+  return table;
+}
+
 std::string markdown_row(const std::vector<std::string>& row) {
   std::string line = "|";
   for (const std::string& text : row) line += fmt::format(" {} |", markdown_escaped(text));
@@ -88,7 +98,7 @@ std::string brief(const std::optional<double>& value, int digits) {
 
 std::string markdown_escaped(std::string_view text) {
   std::string result;
-  for (const char letter : text) {
+  for (const char letter : printable(text)) {
     if (letter == '|' || letter == '\\' || letter == '`' || letter == '*' || letter == '_' ||
         letter == '<' || letter == '[') {
       result += '\\';
@@ -98,7 +108,8 @@ std::string markdown_escaped(std::string_view text) {
   return result;
 }
 
-std::string table_text(const Table& table) {
+std::string table_text(const Table& of_any_text) {
+  const Table table = printable_table(of_any_text);
   std::vector<std::size_t> widths;
   for (const std::string& text : table.head) widths.push_back(width_of(text));
   for (const auto& row : table.rows) {
@@ -113,7 +124,7 @@ std::string table_text(const Table& table) {
 }
 
 std::string table_markdown(const Table& table) {
-  std::string text = fmt::format("## {}\n\n", table.title);
+  std::string text = fmt::format("## {}\n\n", printable(table.title));
   if (!table.note.empty()) text += markdown_escaped(table.note) + "\n\n";
   text += markdown_row(table.head) + "|";
   for (const bool right : right_columns(table)) text += right ? "---:|" : "---|";

@@ -164,7 +164,7 @@ void JobWriter::persist(std::string_view what, const std::function<void()>& writ
 void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {
   reporter_->event("warning",
                    {{"message", fmt::format("{} was not written, next try in {:.1f} s: {}", what,
-                                            wait, error.what())},
+                                            wait, told_outside(folder_->name(), error).what())},
                     {"fault", to_string(error.fault())}});
 }
 

@@ -27,7 +27,8 @@ class RunLoop {
  public:
   RunLoop(JobFolder& folder, const RunOptions& options, SignalRequests& signals, Reporter& reporter,
           Simulation& simulation)
-      : options_(options),
+      : folder_(&folder),
+        options_(options),
         signals_(&signals),
         reporter_(&reporter),
         simulation_(&simulation),
@@ -44,7 +45,8 @@ class RunLoop {
     Outcome outcome = attempt();
     try {
       writer_.write_outcome(outcome);
-    } catch (const StorageError& error) {
+    } catch (const StorageError& inside) {
+      const StorageError error = told_outside(folder_->name(), inside);
       reporter_->event("warning", {{"message", error.what()}});
       // Who only reads files does not learn that it is complete: run again, it says so at once.
       if (outcome.exit_code == ExitCode::done) {
@@ -65,7 +67,7 @@ class RunLoop {
     } catch (const NumericalFailure& failure) {
       return fail(failure);
     } catch (const StorageError& error) {
-      return describe(ExitCode::storage_failure, error.what());
+      return describe(ExitCode::storage_failure, told_outside(folder_->name(), error).what());
     }
   }
 
@@ -132,7 +134,7 @@ class RunLoop {
     try {
       writer_.finish_series(*simulation_);
     } catch (const StorageError& error) {
-      reporter_->event("warning", {{"message", error.what()}});
+      reporter_->event("warning", {{"message", told_outside(folder_->name(), error).what()}});
     }
     Outcome outcome = describe(ExitCode::numerical_failure, failure.what());
     outcome.diagnosis = failure.diagnosis();
@@ -153,6 +155,7 @@ class RunLoop {
     return outcome;
   }
 
+  JobFolder* folder_;
   RunOptions options_;
   SignalRequests* signals_;
   Reporter* reporter_;
@@ -250,11 +253,12 @@ Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOpti
 std::optional<Restored> find_checkpoint(JobFolder& folder, const Scene& scene, Reporter& reporter) {
   try {
     return folder.newest_checkpoint(expectation_of(scene));
-  } catch (const StorageError& error) {
+  } catch (const StorageError& inside) {
+    const StorageError error = told_outside(folder.name(), inside);
     reporter.event("failed", {{"exit_code", static_cast<int>(exit_code_of(error.fault()))},
                               {"fault", to_string(error.fault())},
                               {"message", error.what()}});
-    throw;
+    throw error;
   }
 }
 

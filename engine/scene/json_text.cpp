@@ -71,7 +71,18 @@ class Builder : public nlohmann::json_sax<Json> {
     const bool overflow = error.id == 406;
     return overflow
                ? fmt::format("number beyond the range of a double at byte {}: {}", position, what)
-               : fmt::format("not JSON at byte {}: {}", position, what);
+               : "not JSON at " + place_and_reason(what);
+  }
+
+  /// "line 1, column 2: what is wrong" of the library's "parse error at line 1, column 2: syntax
+  /// error while parsing value - what is wrong".
+  static std::string place_and_reason(std::string_view what) {
+    constexpr std::string_view kBefore = "parse error at ";
+    if (what.starts_with(kBefore)) what.remove_prefix(kBefore.size());
+    const std::size_t place_end = what.find(": ");
+    const std::size_t between = what.find(" - ", place_end);
+    if (place_end == what.npos || between == what.npos) return std::string(what);
+    return fmt::format("{}: {}", what.substr(0, place_end), what.substr(between + 3));
   }
 
   [[nodiscard]] std::string pointer() const {

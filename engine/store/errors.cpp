@@ -92,4 +92,20 @@ StorageError in_file(const std::filesystem::path& path, const StorageError& erro
              : StorageError(error.fault(), fmt::format("{}{}", prefix, message));
 }
 
+std::string told_outside(const std::filesystem::path& root, std::string message) {
+  constexpr std::string_view kInside = "./";
+  const std::string prefix = (root / "").string();
+  if (message.starts_with(prefix)) return message;
+  for (std::size_t at = 0; (at = message.find(kInside, at)) != message.npos;) {
+    const bool begins_a_word = at == 0 || message[at - 1] == ' ' || message[at - 1] == '(';
+    if (begins_a_word) message.replace(at, kInside.size(), prefix);
+    at += begins_a_word ? prefix.size() : kInside.size();
+  }
+  return message;
+}
+
+StorageError told_outside(const std::filesystem::path& root, const StorageError& error) {
+  return {error.fault(), told_outside(root, std::string(error.what()))};
+}
+
 }  // namespace sluice

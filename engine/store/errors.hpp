@@ -60,6 +60,12 @@ auto storing(const Action& action) {
 /// The same fault with the path put before the message unless it is there.
 [[nodiscard]] StorageError in_file(const std::filesystem::path& path, const StorageError& error);
 
+/// A message whose paths begin with "./" because its writer stands in the folder `root`, for those
+/// who do not. One that was told so already stays as it is.
+[[nodiscard]] std::string told_outside(const std::filesystem::path& root, std::string message);
+[[nodiscard]] StorageError told_outside(const std::filesystem::path& root,
+                                        const StorageError& error);
+
 /// Does `action` and puts the path before the message of its StorageError.
 template <class Action>
 auto naming(const std::filesystem::path& path, const Action& action) {

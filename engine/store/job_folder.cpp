@@ -150,6 +150,18 @@ void require_writable(const fs::path& folder) {
   }
 }
 
+/// Of a folder without a scene.
+std::string what_it_lacks(const JobPaths& paths) {
+  const auto checkpoints = paths.checkpoints();
+  if (checkpoints.empty()) {
+    return "this is no job folder: there is no scene.json in it; make one by running a scene file";
+  }
+  return fmt::format(
+      "scene.json is missing, while {} is there: put the scene of this run back as "
+      "scene.json, and it goes on",
+      checkpoints.front().filename().string());
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -255,9 +267,7 @@ JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
 JobFolder JobFolder::open(const fs::path& folder, FileSystem& system) {
   if (!holds_job(folder)) {
     throw StorageError(StorageFault::not_ours,
-                       fmt::format("{}: this is no job folder: there is no scene.json in it; make "
-                                   "one by running a scene file",
-                                   folder.string()));
+                       fmt::format("{}: {}", folder.string(), what_it_lacks(JobPaths(folder))));
   }
   require_writable(folder);
   return {JobPaths(folder), system};
@@ -320,7 +330,7 @@ std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectat
         throw;
       }
       put_aside(path);
-      rejected.emplace_back(error.what());
+      rejected.push_back(told_outside(name(), std::string(error.what())));
     }
   }
   const std::vector<fs::path> bad = paths_.bad_checkpoints();
@@ -331,7 +341,7 @@ std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectat
       StorageFault::no_usable_checkpoint,
       fmt::format("{}: none of its {} checkpoints can be used{}{}; they are kept with the ending "
                   "'{}'. To begin again from the scene, remove them",
-                  paths_.root().string(), bad.size(), rejected.empty() ? "" : ": ",
+                  name().string(), bad.size(), rejected.empty() ? "" : ": ",
                   fmt::join(rejected, "; "), kBadSuffix));
 }
 

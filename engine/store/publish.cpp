@@ -1,5 +1,6 @@
 #include "engine/store/publish.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -190,6 +191,21 @@ void publish(const fs::path& target, ByteSpan image, Durability durability, File
 void publish_text(const fs::path& target, std::string_view text, FileSystem& system) {
   const Check check = [&](const fs::path& path) { verify_text(path, text); };
   commit(target, {std::as_bytes(std::span(text))}, Durability::power_cut, check, system);
+}
+
+void write_text(const fs::path& target, std::string_view text, FileSystem& system) {
+  std::error_code unknown;  // then publishing says what is wrong
+  const fs::file_type type = fs::symlink_status(target, unknown).type();
+  if (unknown || type == fs::file_type::not_found || type == fs::file_type::regular) {
+    return publish_text(target, text, system);
+  }
+  FileDescriptor file(uninterrupted(
+      [&] { return ::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); }));
+  if (file.get() < 0) throw system_error("cannot open for writing", target, errno);
+  write_whole(system, file.get(), std::as_bytes(std::span(text)), target);
+  if (system.close(file.release()) != 0 && errno != EINTR) {
+    throw system_error("cannot close", target, errno);
+  }
 }
 
 bool has_leftovers(const fs::path& folder) {

@@ -27,6 +27,12 @@ void publish(const std::filesystem::path& target, ByteSpan image, Durability dur
 void publish_text(const std::filesystem::path& target, std::string_view text,
                   FileSystem& system = FileSystem::real());
 
+/// Puts a text where a user's word says, which may be anything: what is no regular file, such as a
+/// device, a pipe or a link, is opened and written to as a shell's > does, for a new file in its
+/// place would be another thing. All else as publish_text.
+void write_text(const std::filesystem::path& target, std::string_view text,
+                FileSystem& system = FileSystem::real());
+
 /// Whether there are temporaries in `folder`, of whomever.
 [[nodiscard]] bool has_leftovers(const std::filesystem::path& folder);
 

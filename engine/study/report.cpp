@@ -197,10 +197,13 @@ void publish_report(const std::filesystem::path& folder, const std::filesystem::
   const JobRecord job = read_job(folder);
   const Report report = make_report(job.scene, job.series, job.outcome, tau);
   const JobPaths paths(target);
-  publish_text(paths.report(), report_json(report).dump(2) + "\n");
-  publish_text(paths.report_markdown(), report_markdown(report));
-  publish_text(paths.report_html(),
-               report_html(report, job.series, picture_frames(folder, report)));
+  // Another folder than the job's own is its user's, whose links are meant.
+  const auto put = [&](const std::filesystem::path& path, const std::string& text) {
+    target == folder ? publish_text(path, text) : write_text(path, text);
+  };
+  put(paths.report(), report_json(report).dump(2) + "\n");
+  put(paths.report_markdown(), report_markdown(report));
+  put(paths.report_html(), report_html(report, job.series, picture_frames(folder, report)));
 }
 
 bool publish_missing_report(const std::filesystem::path& folder) {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "engine/ladder/markup.hpp"
 #include "engine/ladder/table.hpp"
 #include "engine/study/report.hpp"
 #include "engine/study/report_tables.hpp"
@@ -26,13 +27,13 @@ std::string wrapped(const std::string& line) {
 }  // namespace
 
 std::string report_text(const Report& report) {
-  std::string text = report.scene.name + "\n";
-  for (const std::string& line : report_lines(report)) text += wrapped(line);
+  std::string text = printable(report.scene.name) + "\n";
+  for (const std::string& line : report_lines(report)) text += wrapped(printable(line));
   text += "\n";
   for (const Table& table : report_tables(report)) {
     Table shown = table;
     if (!shown.note.empty()) {
-      shown.note = wrapped(shown.note);
+      shown.note = wrapped(printable(shown.note));
       shown.note.pop_back();
     }
     text += table_text(shown);

@@ -48,6 +48,10 @@ class Words(Sandbox):
                 ("serve --data d --max-memory 3x", '--max-memory: is "3x", but must be a size in bytes, such as'),
                 ("serve --data d --max-queued -1", '--max-queued: is "-1", but must be a whole number, 0 or more;'),
                 ("report q --tau 0", '--tau: is "0", but must be a number above 0;'),
+                ("run --fodler x", 'there is no option --fodler: did you mean "--folder"'),
+                ("run none.json --fodler x", 'there is no option --fodler: did you mean "--folder"'),
+                ("run --thread", 'there is no option --thread: did you mean "--threads"'),
+                ("--bogus", "there is no option --bogus: "),
                 ("", "a verb is missing, such as run;")):
             with self.subTest(words):
                 complaint = self.expect(2, *words.split()).stderr
@@ -56,6 +60,38 @@ class Words(Sandbox):
                 self.assertEqual(complaint.count("\n"), 1)
                 self.assertLess(len(complaint), 200 + 120 * ("did you mean" in complaint))
         self.assertEqual([path.name for path in self.folder.iterdir()], ["case.json"])
+
+    def test_names_that_are_empty_can_be_seen_in_what_is_said_of_them(self):
+        for words in (["run", ""], ["validate", ""], ["inspect", ""], ["export", ""], [""]):
+            self.assertIn('""', self.expect(2, *words).stderr)
+
+    def test_a_file_that_cannot_be_read_ends_every_verb_with_the_same_code(self):
+        (self.folder / "shut").mkdir()
+        for name in ("closed.json", "shut/case.json"):
+            (self.folder / name).write_text(json.dumps(scene(**SHORT)))
+        (self.folder / "closed.json").chmod(0)
+        (self.folder / "shut").chmod(0)
+        self.folder.chmod(0o755)
+        nobody = {"user": 65534} if os.geteuid() == 0 else {}
+        for words in ("run", "validate", "plan", "inspect", "submit", "study", "report", "sensors", "stability --scheme",
+                      "export --format csv"):
+            for name in ("closed.json", "shut/case.json"):
+                with self.subTest(f"{words} {name}"):
+                    done = subprocess.run([run_binary.SLUICE, *words.split(), name], cwd=self.folder, text=True,
+                                          capture_output=True, check=False, **nobody)
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertIn(name, done.stderr)
+                    if name.startswith("shut"):
+                        self.assertNotIn("there is no", done.stderr)
+
+    def test_what_is_no_json_is_told_with_one_place(self):
+        for text, said in (("{", "(the whole scene): not JSON at line 1, column 2: unexpected end of input"),
+                           ('{"name": "a",\n oops}', "not JSON at line 2, column 2: invalid literal;")):
+            (self.folder / "bad.json").write_text(text)
+            told = self.expect(3, "validate", "bad.json").stderr
+            self.assertIn(said, told)
+            self.assertNotIn("parse error", told)
+            self.assertNotIn("at byte", told)
 
     def test_a_file_that_is_not_there_ends_every_verb_with_the_same_code(self):
         for words in ("run", "validate", "plan", "inspect", "submit", "study", "report", "sensors",
@@ -73,6 +109,27 @@ class Words(Sandbox):
         bad = subprocess.run([run_binary.SLUICE, "validate", "-"], input="{", text=True, capture_output=True, check=False)
         self.assertEqual(bad.returncode, 3)
         self.assertIn("stdin: (the whole scene)", bad.stderr)
+
+
+class Completion(Sandbox):
+    def completed(self, *words):
+        """What bash offers for the last of these words."""
+        script = ('source <("$0" completion bash) && COMP_WORDS=(sluice "$@") COMP_CWORD=$# && _sluice && '
+                  'printf "%s\\n" "${COMPREPLY[@]}"')
+        done = subprocess.run(["bash", "-c", script, run_binary.SLUICE, *words], text=True, capture_output=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return done.stdout.split()
+
+    def test_bash_completes_verbs_options_and_their_words(self):
+        self.assertEqual(self.completed("st"), ["study", "stability"])
+        self.assertEqual(len(self.completed("")), len(re.findall("^  [a-z]", self.expect(0, "help").stdout, re.MULTILINE)))
+        self.assertEqual(self.completed("help", "exp"), ["export"])
+        self.assertEqual(self.completed("run", "--th"), ["--threads"])
+        self.assertEqual(self.completed("run", "--no-checkpoint", "--th"), ["--threads"])
+        self.assertEqual(self.completed("run", "--simd", ""), ["SSE4", "AVX2", "AVX3"])
+        self.assertEqual(self.completed("report", "job", "--format", "a"), ["apng"])
+        self.assertEqual(self.completed("run", "--folder", ""), [])
+        self.assertEqual(self.completed("run", "q"), [])
 
 
 class Folders(Sandbox):
@@ -101,6 +158,56 @@ class Folders(Sandbox):
             self.assertNotIn("0.000 s", said)
             self.assertEqual(self.outcome("job"), before)
             self.assertTrue((self.folder / "job" / "report.html").exists())
+
+    def test_a_run_that_had_nothing_to_do_tells_no_table_of_zeros(self):
+        self.expect(0, "run", self.write_scene(scene(end_time=0.1)), "--folder", "job")
+        step = self.outcome("job")["step"]
+        earlier = self.write_scene(scene(**SHORT), "earlier.json")
+        for missing in ("outcome.json", "series.h5"):
+            (self.folder / "job" / missing).unlink()
+            said = self.expect(0, "run", "job").stderr
+            self.assertIn(f"job is complete already: step {step}, t = 0.1", said)
+            self.assertNotIn("0.000 s", said)
+            self.assertTrue((self.folder / "job" / missing).exists())
+        said = self.expect(0, "run", earlier, "--folder", "job").stderr
+        self.assertIn(f"job is complete already: step {step}, t = 0.1", said)
+        self.assertNotIn("0.000 s", said)
+
+    def test_a_scene_that_is_missing_beside_its_checkpoints_is_to_be_put_back(self):
+        path = self.write_scene()
+        self.expect(85, "run", path, "--folder", "job", "--stop-after-step", 10)
+        text = (self.folder / "job" / "scene.json").read_text()
+        (self.folder / "job" / "scene.json").unlink()
+        said = self.expect(2, "run", "job").stderr
+        self.assertIn("scene.json is missing", said)
+        self.assertIn("put the scene of this run back", said)
+        (self.folder / "job" / "scene.json").write_text(text)
+        process = self.start("run", "job", stderr=subprocess.PIPE)
+        self.wait_for(process, "resumed")
+        (self.folder / "job" / "scene.json").unlink()
+        process.terminate()
+        process.stdout.read()
+        said = process.stderr.read()
+        process.stderr.close()
+        self.assertEqual(process.wait(), 85)
+        self.assertIn("put the scene of this run back", said)
+
+    def test_messages_name_the_folder_that_was_given(self):
+        path = self.write_scene()
+        for given in ("job", "./here", str(self.folder / "whole")):
+            with self.subTest(given):
+                self.expect(85, "run", path, "--folder", given, "--stop-after-step", 10)
+                (self.folder / given / "scene.json").write_text(json.dumps(scene(gravity=[0, -1])))
+                done = self.expect(3, "run", given)
+                checkpoint = max(path.name for path in (self.folder / given).glob("checkpoint-*.h5"))
+                self.assertTrue(done.stderr.startswith(f"sluice: {given}/{checkpoint}: of another scene"), done.stderr)
+                self.assertIn(f'"{given}/{checkpoint}: ', done.stdout)
+        study = {"name": "pair", "scene": scene(**SHORT), "vary": [{"key": "/end_time", "values": [0.01, 0.02]}]}
+        (self.folder / "study.json").write_text(json.dumps(study))
+        self.expect(0, "study", "study.json", "--folder", "out")
+        study["scene"]["gravity"] = [0, -1]
+        (self.folder / "study.json").write_text(json.dumps(study))
+        self.assertIn("sluice: out/runs/pair-", self.expect(3, "study", "study.json", "--folder", "out").stderr)
 
     def test_nothing_is_advised_after_a_failure_that_would_come_again(self):
         said = self.expect(4, "run", self.write_scene(failing_scene()), "--folder", "job").stderr
@@ -146,6 +253,77 @@ class Folders(Sandbox):
         self.assertIn("digests", self.expect(0, "inspect", "job/outcome.json").stdout)
         (self.folder / "broken.json").write_text("{")
         self.expect(5, "inspect", "broken.json")
+
+    def test_inspect_says_what_a_file_is_and_calls_none_damaged_that_has_no_sum(self):
+        content = scene(**SHORT, output={"frames": {"interval": 0.05}})
+        self.expect(0, "run", self.write_scene(content), "--folder", "job")
+        self.expect(0, "export", "job")
+        self.expect(0, "export", "job", "--format", "csv")
+        (self.folder / "jobs.sqlite").write_bytes(b"SQLite format 3\0")
+        (self.folder / "results.csv").write_text("run,error\n")
+        (self.folder / "worker.log").write_text("")
+        files = [path for path in (self.folder / "job").rglob("*") if path.is_file()]
+        self.assertGreater(len(files), 10)
+        for path in files + [self.folder / name for name in ("jobs.sqlite", "results.csv", "worker.log")]:
+            with self.subTest(path.name):
+                self.assertNotIn("damaged", self.expect(0, "inspect", path).stdout)
+                json.loads(self.expect(0, "inspect", path, "--json").stdout)
+        for stranger, text in (("notes.txt", "hello"), ("empty", ""), ("table.csv", "a,b\n")):
+            (self.folder / stranger).write_text(text)
+            said = self.expect(2, "inspect", stranger)
+            self.assertIn(f"{stranger} is none of the files that inspect explains", said.stderr)
+            self.assertEqual(said.stdout, "")
+        (self.folder / "cut.h5").write_bytes((self.folder / "job" / "series.h5").read_bytes()[:-1])
+        self.assertIn("damaged", self.expect(5, "inspect", "cut.h5").stdout)
+
+    def test_a_simd_target_that_this_machine_lacks_is_a_mistake_before_anything_is_made(self):
+        path = self.write_scene(scene(**SHORT))
+        for target in ("SSE4", "AVX2", "AVX3"):
+            planned = self.sluice("plan", path, "--no-calibration", "--simd", target)
+            if planned.returncode == 0:
+                continue
+            for done in (planned, self.sluice("run", path, "--folder", "job", "--simd", target)):
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f'--simd: is "{target}", but this machine runs only ', done.stderr)
+            self.assertFalse((self.folder / "job").exists())
+
+    def test_a_wrong_target_in_the_environment_hides_neither_version_nor_help(self):
+        def with_target(*words):
+            return subprocess.run([run_binary.SLUICE, *words], env={**os.environ, "SLUICE_SIMD": "FOO"}, text=True,
+                                  capture_output=True, check=False)
+        for words in (["version"], ["--version"], ["help"], ["help", "run"], ["--help"], ["run", "--help"]):
+            self.assertEqual(with_target(*words).returncode, 0, words)
+        done = with_target("stability", "--list")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("SLUICE_SIMD: ", done.stderr)
+
+    def test_what_cannot_be_said_on_stderr_changes_no_exit_code(self):
+        (self.folder / "bad.json").write_text(json.dumps(scene(gravity="down")))
+        (self.folder / "study.json").write_text("{}")
+        for code, words in ((3, "validate bad.json"), (3, "study study.json"), (3, "run bad.json"), (2, "run none.json")):
+            with self.subTest(words), open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([run_binary.SLUICE, *words.split()], cwd=self.folder, stderr=full, check=False)
+                self.assertEqual(done.returncode, code)
+
+    def test_an_output_goes_through_links_and_into_pipes_and_replaces_neither(self):
+        (self.folder / "link").symlink_to("there")
+        os.mkfifo(self.folder / "pipe")
+        self.expect(0, "stability", "--quick", "still-tank", "--json", "link")
+        self.assertTrue((self.folder / "link").is_symlink())
+        json.loads((self.folder / "there").read_text())
+        reader = os.open(self.folder / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, reader)
+        self.expect(0, "stability", "--quick", "still-tank", "--json", "pipe")
+        json.loads(os.read(reader, 1 << 16))
+        self.assertTrue((self.folder / "pipe").is_fifo())
+        self.expect(0, "run", self.write_scene(scene(**SHORT)), "--folder", "job")
+        (self.folder / "written").mkdir()
+        for name in ("report.txt", "report.html"):
+            (self.folder / "written" / name).symlink_to(f"../linked-{name}")
+        self.expect(0, "report", "job", "--output", "written")
+        for name in ("report.txt", "report.html"):
+            self.assertTrue((self.folder / "written" / name).is_symlink())
+            self.assertIn("small", (self.folder / f"linked-{name}").read_text())
 
 
 if __name__ == "__main__":

@@ -521,8 +521,8 @@ class Reading(Sandbox):
                                         "0.01", "--format", "json").stdout)
         self.assertAlmostEqual(series["provisional_after"], series["time"][-1] - 0.03)
 
-    def test_an_unknown_sensor_and_a_filter_without_tau_are_usage_errors(self):
-        self.assertIn('"P1"', self.expect(2, "sensors", "job", "p1").stderr)
+    def test_an_unknown_sensor_is_not_found_and_a_filter_without_tau_is_a_usage_error(self):
+        self.assertIn('"P1"', self.expect(8, "sensors", "job", "p1").stderr)
         self.assertIn("--tau", self.expect(2, "sensors", "job", "P1", "--filter", "gaussian").stderr)
 
     def test_frames_are_exported_for_paraview_and_as_tables(self):

@@ -120,10 +120,10 @@ class Acts(Case):
         for job in jobs:
             server.wait_for(job, "completed")
 
-        def typed(answer, job, *options):
+        def typed(answer, job, *options, code=DONE, **streams):
             inner, outer = pty.openpty()
             process = subprocess.Popen([client_program.PROGRAM, "delete", job, "--server", server.url, *options],
-                                       stdin=outer, stdout=outer, stderr=outer, env=environment())
+                                       stdin=outer, stdout=outer, env=environment(), **{"stderr": outer, **streams})
             os.close(outer)
             said = b""
             while b"[y/N]" not in said and select.select([inner], [], [], 60)[0]:
@@ -133,15 +133,26 @@ class Acts(Case):
                     break  # it ended without asking
             if b"[y/N]" in said:
                 os.write(inner, answer)
-            self.assertEqual(process.wait(), DONE)
+            self.assertEqual(process.wait(), code)
             os.close(inner)
             return said.decode()
 
-        self.assertIn(f"delete {jobs[0]} (tiny, completed)", typed(b"n\n", jobs[0]))
+        self.assertIn(f"delete {jobs[0]} (tiny, completed)", typed(b"n\n", jobs[0], code=USAGE))
+        self.assertIn("[y/N]", typed(b"n\n", jobs[0], code=USAGE, stderr=subprocess.DEVNULL))
         typed(b"y\n", jobs[1])
         self.assertNotIn("[y/N]", typed(b"", jobs[2], "--yes"))
         self.expect(DONE, "delete", jobs[3], "--server", server.url)
         self.assertEqual([job["id"] for job in server.ask("GET", "/v1/jobs").json()["jobs"]], [jobs[0]])
+
+    def test_each_job_is_taken_once_and_last_is_what_it_was_at_the_beginning(self):
+        server = self.serve()
+        at = ("--server", server.url)
+        jobs = [server.submit(scene(0.02)) for _ in range(3)]
+        for job in jobs:
+            server.wait_for(job, "completed")
+        self.assertEqual(self.expect(DONE, "delete", "last", jobs[2], "last", *at).stdout, f"{jobs[2]} deleted\n")
+        said = client("delete", "last", "x", jobs[0], *at)
+        self.assertEqual((said.returncode, said.stdout), (NOT_FOUND, f"{jobs[1]} deleted\n{jobs[0]} deleted\n"))
 
     def test_a_list_shows_the_newest_so_many(self):
         server = self.serve()

@@ -143,7 +143,7 @@ class Story(Case):
 
     def test_series_and_report_are_those_of_the_folder(self):
         server = self.serve()
-        job = server.submit(scene(0.3, scales={"height": 0.3, "width": 0.6}))
+        job = server.submit(scene(0.3, scales={"height": 0.3, "width": 0.6}, output={"frames": {"interval": 0.02}}))
         server.wait_for(job, "completed")
         folder = os.path.join(self.data, "jobs", job)
         for options in ([], ["P1"], ["P1", "--filter", "gaussian", "--tau", "0.002"],
@@ -152,11 +152,40 @@ class Story(Case):
                 here = self.expect(DONE, "sensors", folder, *options).stdout
                 there = self.expect(DONE, "sensors", job, *options, "--server", server.url).stdout
                 self.assertEqual(there, here)
-        for options in ([], ["--json"], ["--tau", "0.004"]):
+        def shown(*words):
+            done = subprocess.run([PROGRAM, "report", *words], capture_output=True, check=False, env=environment())
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            return done.stdout
+        for options in ([], ["--json"], ["--tau", "0.004"], ["--format", "markdown"], ["--format", "html"],
+                        ["--format", "apng"]):
             with self.subTest(options=options):
-                here = self.expect(DONE, "report", folder, *options).stdout
-                there = self.expect(DONE, "report", job, *options, "--server", server.url).stdout
-                self.assertEqual(there, here)
+                self.assertEqual(shown(job, *options, "--server", server.url), shown(folder, *options))
+        written = os.path.join(self.folder, "written")
+        shown(job, "--output", written, "--server", server.url)
+        with open(os.path.join(written, "report.html"), "rb") as page:
+            self.assertEqual(page.read(), shown(folder, "--format", "html"))
+
+    def test_what_is_wrong_with_a_request_for_a_series_is_the_same_for_a_folder(self):
+        server = self.serve()
+        job = server.submit(scene(0.05))
+        server.wait_for(job, "completed")
+        folder = os.path.join(self.data, "jobs", job)
+        for code, options in ((USAGE, "P1 --from 0.2 --to 0.1"), (USAGE, "P1 --from 1e300"), (USAGE, "P1 --to -1e300"),
+                              (USAGE, "P1 --filter gaussian --tau 1e9"), (USAGE, "P1 --dimensionless"),
+                              (NOT_FOUND, "P2"), (USAGE, "--json --format csv"), (USAGE, "--max-points 20"),
+                              (USAGE, "--filter gaussian --tau 0.002"), (USAGE, "--from 0"), (USAGE, "--to 1"),
+                              (USAGE, "--dimensionless")):
+            with self.subTest(options):
+                here = self.expect(code, "sensors", folder, *options.split()).stderr
+                there = self.expect(code, "sensors", job, *options.split(), "--server", server.url).stderr
+                self.assertEqual(here, there)
+
+    def test_a_report_of_a_job_without_snapshots_names_the_job_and_no_folder(self):
+        server = self.serve()
+        job = server.submit(scene(0.05))
+        server.wait_for(job, "completed")
+        said = self.expect(USAGE, "report", job, "--format", "apng", "--server", server.url).stderr
+        self.assertIn(f"{job} has no snapshots to show", said)
 
     def test_a_part_of_a_series_and_few_of_its_samples(self):
         server = self.serve()
@@ -304,7 +333,11 @@ class Errors(Case):
         watch = re.search(r"to watch: +sluice (.*)", said).group(1)
         self.expect(DONE, *shlex.split(watch))
         os.chmod(token, 0o644)
-        self.assertIn("chmod 600", self.expect(USAGE, "list", "--token-file", token, *at).stderr)
+        said = self.expect(USAGE, "list", "--token-file", token, *at).stderr
+        self.assertIn("chmod 600", said)
+        self.assertNotIn("openssl", said, "what makes a token would overwrite this one")
+        said = self.expect(USAGE, "list", "--token-file", os.path.join(self.folder, "none"), *at).stderr
+        self.assertIn("openssl rand", said)
 
     def test_a_folder_that_is_none_points_to_the_service(self):
         self.assertIn("--server", self.expect(USAGE, "sensors", "nowhere").stderr)

@@ -36,6 +36,15 @@ TEST(StorageErrorOf, AFileSystemErrorHasItsPathItsMeaningAndItsFault) {
   }
 }
 
+TEST(ToldOutside, AMessageNamesTheFolderOncePerPath) {
+  EXPECT_EQ(told_outside("job", "./frames/a: cannot write (./b)"),
+            "job/frames/a: cannot write (job/b)");
+  EXPECT_EQ(told_outside("./job", told_outside("./job", "./a: x")), "./job/a: x");
+  EXPECT_EQ(told_outside("job", "../a: x."), "../a: x.");
+  EXPECT_EQ(told_outside(".", "./a: x"), "./a: x");
+  EXPECT_EQ(told_outside("/", "./a: x"), "/a: x");
+}
+
 TEST(StorageErrorOf, AWantOfMemoryForAFileIsAFailureThatPasses) {
   expect_fault(StorageFault::io, [] { storing([] { throw std::bad_alloc(); }); });
 }

@@ -1,12 +1,15 @@
 #include "engine/store/publish.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <fstream>
@@ -50,6 +53,55 @@ TEST(Publish, WritesATextAsItIs) {
   publish_text(folder / "empty", "");
   EXPECT_EQ(read_text(folder / "a.json", 100), "{}\n");
   EXPECT_EQ(read_text(folder / "empty", 100), "");
+}
+
+TEST(WriteText, GoesThroughALinkAndLeavesIt) {
+  const TemporaryFolder folder;
+  publish_text(folder / "there", "a longer text before");
+  fs::create_symlink("there", folder / "link");
+  fs::create_symlink("link", folder / "link of a link");
+  fs::create_symlink("new", folder / "dangling");
+  write_text(folder / "link of a link", "one");
+  write_text(folder / "dangling", "two");
+  EXPECT_EQ(read_text(folder / "there", 100), "one");
+  EXPECT_EQ(read_text(folder / "new", 100), "two");
+  for (const char* name : {"link", "link of a link", "dangling"}) {
+    EXPECT_TRUE(fs::is_symlink(folder / name)) << name;
+  }
+}
+
+TEST(WriteText, WritesIntoWhatIsNoRegularFile) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const FileDescriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK));
+  write_text(pipe, "text");
+  std::array<char, 8> read{};
+  EXPECT_EQ(::read(reader.get(), read.data(), read.size()), 4);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  fs::create_directory(folder / "folder");
+  expect_fault(StorageFault::io, [&] { write_text(folder / "folder", "text"); });
+  EXPECT_EQ(names_in(folder.path()), (Names{"folder", "pipe"}));
+}
+
+TEST(WriteText, LeavesADeviceADevice) {
+  const TemporaryFolder folder;
+  const fs::path node = folder / "null";
+  if (::mknod(node.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "needs root";
+  write_text(node, "text");
+  EXPECT_TRUE(fs::is_character_file(node));
+}
+
+TEST(WriteText, ReplacesARegularFileWhole) {
+  const TemporaryFolder folder;
+  publish_text(folder / "file", "old");
+  FaultyFileSystem faulty(Step::rename, [] { return ENOSPC; });
+  expect_fault(StorageFault::disk_full, [&] { write_text(folder / "file", "new", faulty); });
+  EXPECT_EQ(read_text(folder / "file", 100), "old");
+  write_text(folder / "file", "new");
+  write_text(folder / "another", "new");
+  EXPECT_EQ(read_text(folder / "file", 100), "new");
+  EXPECT_EQ(names_in(folder.path()), (Names{"another", "file"}));
 }
 
 TEST(Publish, LeavesTheOldFileAndNoTemporaryWhicheverStepFails) {

@@ -238,6 +238,29 @@ TEST(Report, AsMarkdownLeavesNoTableOpenToATextOfTheUser) {
   EXPECT_NE(text.find("a \\| b \\<b> \\[link](x)"), std::string::npos);
 }
 
+TEST(Report, AsTextAndMarkdownHasNothingThatATerminalObeys) {
+  Scene scene = scene_of_no_experiment();
+  // Bell, escape, C1 controls, a direction turned, a line broken, a tag; and letters of all
+  // lengths.
+  const std::string nasty =
+      "a\x07\x1b\xC2\x9B\xC2\x85\xE2\x80\xAE\xE2\x80\xA8\xF3\xA0\x81\x81z "
+      "\xC3\xBC\xE2\x88\x9A\xF0\x9F\x8C\x8A";
+  scene.name = nasty;
+  scene.description = nasty;
+  Series sensor = probe();
+  sensor.name = nasty;
+  const Report report = make_report(scene, {sensor}, nullptr);
+  const std::string clean = "a???????z \xC3\xBC\xE2\x88\x9A\xF0\x9F\x8C\x8A";
+  for (const std::string& text : {report_text(report), report_markdown(report)}) {
+    EXPECT_NE(text.find(clean + "\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find_first_of("\x07\x1b"), std::string::npos);
+    for (const char* const hidden :
+         {"\xC2\x9B", "\xC2\x85", "\xE2\x80\xAE", "\xE2\x80\xA8", "\xF3\xA0\x81\x81"}) {
+      EXPECT_EQ(text.find(hidden), std::string::npos);
+    }
+  }
+}
+
 SceneReference straight_line() {
   SceneReference reference;
   reference.kind = ReferenceKind::series;
