@@ -85,6 +85,7 @@ class ThreadTeam {
   void run_shared(std::size_t rounds, std::size_t tasks, Call call, const void* body);
   void work(std::size_t self);
   void help(std::size_t self);
+  void end_helpers();
 
   void reset_firsts(std::size_t tasks);
   void finish_first(std::size_t task);
