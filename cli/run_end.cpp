@@ -81,7 +81,8 @@ std::string next_commands(const JobFolder& folder, const Scene& scene, const Out
   return text;
 }
 
-void leave_report(const JobFolder& folder, const Outcome& outcome, double patience) {
+void leave_report(const JobFolder& folder, const Outcome& outcome, double patience,
+                  const std::function<bool()>& hurried) {
   if (outcome.exit_code != ExitCode::done) return;
   try {
     folder.require_held();
@@ -92,7 +93,8 @@ void leave_report(const JobFolder& folder, const Outcome& outcome, double patien
               fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait, error.what())
                   .c_str(),
               stderr);
-        });
+        },
+        hurried);
   } catch (const std::exception& error) {
     std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n", error.what(),
                            shell_path(folder.name()))
