@@ -13,6 +13,7 @@
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "cli/usage_text.hpp"
@@ -92,6 +93,9 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     const StorageError said = system_error(error);
     return fail(exit_code_of(said.fault()), said.what());
+  } catch (const std::system_error& error) {
+    // No thread, process or pipe: of the system's making, as a full disk is.
+    return fail(ExitCode::storage_failure, error.what());
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::internal_error, "out of memory: see sluice plan for what a scene needs");
   } catch (const std::exception& error) {

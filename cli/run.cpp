@@ -123,14 +123,17 @@ void run(const RunArguments& arguments) {
   const Outcome outcome =
       run_job(job.folder, job.scene, options_of(arguments, job.scene), *reporter);
   const std::string closing = closing_text(job.folder, outcome, earlier);
-  leave_report(job.folder, outcome, arguments.storage_patience);
+  leave_report(job.folder, outcome, arguments.storage_patience,
+               [] { return signals.stop_requested(); });
   job.folder.remove_leftovers();
   // Stdout belongs to the JSON lines where they are written.
   std::FILE* const out = form == ProgressForm::bar ? stdout : stderr;
   std::fputs((closing + next_commands(job.folder, job.scene, outcome)).c_str(), out);
   if (outcome.exit_code == ExitCode::done) return;
-  const bool stopped = outcome.exit_code == ExitCode::checkpointed;
-  throw CommandEnd(outcome.exit_code, stopped ? "" : outcome.reason);
+  // Without a digest, what the run goes on from is not where it stopped: that needs words.
+  const bool plain_stop =
+      outcome.exit_code == ExitCode::checkpointed && !outcome.physics_digest.empty();
+  throw CommandEnd(outcome.exit_code, plain_stop ? "" : outcome.reason);
 }
 
 void add_test_options(CLI::App& verb, RunArguments& arguments) {

@@ -90,7 +90,8 @@ std::string next_commands(const JobFolder& folder, const Scene& scene, const Out
   return text;
 }
 
-void leave_report(const JobFolder& folder, const Outcome& outcome, double patience) {
+void leave_report(const JobFolder& folder, const Outcome& outcome, double patience,
+                  const std::function<bool()>& hurried) {
   if (outcome.exit_code != ExitCode::done) return;
   try {
     folder.require_held();
@@ -101,7 +102,8 @@ void leave_report(const JobFolder& folder, const Outcome& outcome, double patien
                                  told_outside(folder.name(), error).what())
                          .c_str(),
                      stderr);
-        });
+        },
+        hurried);
   } catch (const std::exception& error) {
     std::fputs(fmt::format("sluice: no report: {}; sluice report {} makes it\n",
                            told_outside(folder.name(), std::string(error.what())),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "engine/run/outcome.hpp"
@@ -23,8 +24,9 @@ namespace sluice {
                                         const Outcome& outcome);
 
 /// Leaves the report beside the results of a complete run, for those who only read files. What goes
-/// wrong here makes no run a failure: it is tried for `patience` seconds, and `sluice report` can
-/// make it again.
-void leave_report(const JobFolder& folder, const Outcome& outcome, double patience);
+/// wrong here makes no run a failure: it is tried for `patience` seconds, or until somebody is
+/// `hurried` (insist.hpp), and `sluice report` can make it again.
+void leave_report(const JobFolder& folder, const Outcome& outcome, double patience,
+                  const std::function<bool()>& hurried);
 
 }  // namespace sluice

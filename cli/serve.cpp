@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 
 #include "cli/notify.hpp"
 #include "cli/serve_options.hpp"
@@ -156,7 +157,7 @@ void serve_or_end(ServeOptions& options) {
     throw CommandEnd(exit_code_of(error.fault()), error.what());
   } catch (const StorageError&) {
     throw;
-  } catch (const std::filesystem::filesystem_error&) {
+  } catch (const std::system_error&) {
     throw;
   } catch (const std::runtime_error& error) {
     // The address or the token file.

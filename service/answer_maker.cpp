@@ -4,14 +4,23 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
+#include <system_error>
+#include <thread>
 
 #include "engine/store/errors.hpp"
 #include "service/problem.hpp"
+#include "service/worker_exit.hpp"
 
 namespace sluice {
 namespace {
 
+using MakerClock = std::chrono::steady_clock;
+
 constexpr std::size_t kMostDamaged = 64;  // known
+/// Of the children: below the service's threads, which answer everybody else, and above its
+/// workers, which would leave them nothing.
+constexpr int kGivesWay = 3;
 
 // What the first byte of a child's answer says of the rest.
 constexpr char kText = 't';
@@ -20,6 +29,32 @@ constexpr char kProblem = 'p';  // a JSON object
 /// A child with its heap, and what reading a file and working it up takes, bytes.
 std::int64_t memory_for(std::uint64_t bytes) {
   return (std::int64_t{16} << 20) + 8 * static_cast<std::int64_t>(bytes);
+}
+
+ApartLimits limits_for(std::uint64_t bytes) {
+  ApartLimits limits = ApartLimits::for_bytes(bytes);
+  limits.nice = kGivesWay;
+  return limits;
+}
+
+/// Where the system refuses a child, others may soon end.
+template <class Work>
+auto or_overloaded(const Work& work) {
+  try {
+    return work();
+  } catch (const std::system_error& error) {
+    throw ApiError(ProblemType::overloaded,
+                   fmt::format("{}: try again in some seconds", error.what()));
+  }
+}
+
+/// The exit codes of our own programs that tell of files (worker_exit.hpp).
+StorageFault fault_of(const ApartEnd& end) {
+  const bool of_files = end.exit_code == WorkerExit::storage_failure ||
+                        end.exit_code == WorkerExit::no_usable_checkpoint ||
+                        end.exit_code == WorkerExit::invalid_scene ||
+                        end.exit_code == WorkerExit::usage;
+  return of_files || !end.death.empty() ? StorageFault::corrupt : StorageFault::io;
 }
 
 /// In the child: the ApiError too becomes a text.
@@ -47,6 +82,10 @@ std::string understood(std::string text) {
 
 }  // namespace
 
+int AnswerMaker::default_children() {
+  return std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 AnswerMaker::Stamp AnswerMaker::stamp_of(const std::filesystem::path& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return {};
@@ -55,8 +94,13 @@ AnswerMaker::Stamp AnswerMaker::stamp_of(const std::filesystem::path& path) {
 }
 
 AnswerMaker::Share AnswerMaker::share_for(std::uint64_t bytes) {
-  Share share{threads_.try_take(), nullptr};
-  if (share.thread) share.memory = memory_.try_take(memory_for(bytes), limits_.patience);
+  const auto until = MakerClock::now() + std::chrono::duration<double>(limits_.patience);
+  const auto left = [&] {
+    return std::max(0.0, std::chrono::duration<double>(until - MakerClock::now()).count());
+  };
+  Share share{threads_.try_take(), nullptr, nullptr};
+  if (share.thread) share.child = children_.try_take(1, left());
+  if (share.child) share.memory = memory_.try_take(memory_for(bytes), left());
   if (share.memory) return share;
   throw ApiError(ProblemType::overloaded,
                  "too many series and reports are being made: try again in some seconds");
@@ -75,7 +119,8 @@ std::string AnswerMaker::from_file(const std::filesystem::path& path,
   const auto bytes = static_cast<std::uint64_t>(stamp.size);
   const Share share = share_for(bytes);
   try {
-    return understood(work_apart(ApartLimits::for_bytes(bytes), [&] { return told(work); }));
+    return understood(
+        or_overloaded([&] { return work_apart(limits_for(bytes), [&] { return told(work); }); }));
   } catch (const ApartFailure& failure) {
     const std::string message = damage_message(path, failure);
     const std::scoped_lock lock(mutex_);
@@ -89,10 +134,11 @@ std::string AnswerMaker::by_program(std::uint64_t bytes, const std::filesystem::
                                     const std::filesystem::path& folder,
                                     const std::vector<std::string>& arguments) {
   const Share share = share_for(bytes);
-  ApartEnd end = program_apart(ApartLimits::for_bytes(bytes), program, folder, arguments);
+  ApartEnd end =
+      or_overloaded([&] { return program_apart(limits_for(bytes), program, folder, arguments); });
   if (end.death.empty() && end.exit_code == 0) return std::move(end.output);
-  throw StorageError(StorageFault::io, fmt::format("{}: it cannot be made: {}", folder.string(),
-                                                   end.death.empty() ? end.errors : end.death));
+  throw StorageError(fault_of(end), fmt::format("{}: it cannot be made: {}", folder.string(),
+                                                end.death.empty() ? end.errors : end.death));
 }
 
 }  // namespace sluice

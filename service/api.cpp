@@ -152,8 +152,25 @@ ProblemType problem_of(JobStoreError::Fault fault) {
 }
 
 ProblemType problem_of(StorageFault fault) {
-  if (fault == StorageFault::disk_full) return ProblemType::disk_full;
-  if (fault == StorageFault::locked) return ProblemType::wrong_state;
+  using enum StorageFault;
+  switch (fault) {
+    case disk_full:
+      return ProblemType::disk_full;
+    case locked:
+      return ProblemType::wrong_state;
+    case corrupt:
+    case unsupported_version:
+    case wrong_scene:
+    case not_ours:
+    case no_usable_checkpoint:
+      return ProblemType::damaged_files;
+    case io:
+    case unwritable:
+    case invalid_content:
+    case already_exists:
+    case lost:
+      break;
+  }
   return ProblemType::internal;
 }
 
@@ -161,7 +178,8 @@ ProblemType problem_of(StorageFault fault) {
 /// client.
 Response service_failure(const ApiContext& context, const Request& request, ProblemType type,
                          std::string_view message) {
-  if (type == ProblemType::internal || type == ProblemType::disk_full) {
+  if (type == ProblemType::internal || type == ProblemType::disk_full ||
+      type == ProblemType::damaged_files) {
     log_line({{"event", "request_failed"},
               {"method", request.method},
               {"path", request.path},
@@ -170,6 +188,14 @@ Response service_failure(const ApiContext& context, const Request& request, Prob
   Response response = problem_response(type, without_place(std::string(message), context.data));
   if (response.status == 503) response.headers.emplace_back("Retry-After", "5");
   return response;
+}
+
+/// What is wrong with files is the damage of a job or study only where the request names one.
+ProblemType problem_of(StorageFault fault, const Request& request) {
+  const ProblemType type = problem_of(fault);
+  const bool names_one =
+      request.path.starts_with("/v1/jobs/") || request.path.starts_with("/v1/studies/");
+  return type == ProblemType::damaged_files && !names_one ? ProblemType::internal : type;
 }
 
 /// For a request that failed because the files of its job are gone.
@@ -200,7 +226,7 @@ Response handle_or_fail(ApiContext& context, const Request& request) {
     return service_failure(context, request, problem_of(error.fault()), error.what());
   } catch (const StorageError& error) {
     if (auto answer = answer_for_lost_files(context, request)) return *std::move(answer);
-    return service_failure(context, request, problem_of(error.fault()), error.what());
+    return service_failure(context, request, problem_of(error.fault(), request), error.what());
   } catch (const std::bad_alloc&) {
     return problem_response(ProblemType::overloaded, "the service is out of memory");
   } catch (const std::exception& error) {
@@ -210,15 +236,6 @@ Response handle_or_fail(ApiContext& context, const Request& request) {
 }
 
 }  // namespace
-
-std::string without_place(std::string text, const std::filesystem::path& data) {
-  const std::string place = data.string();
-  for (auto at = text.find(place); at != text.npos; at = text.find(place, at)) {
-    const bool inside = text.compare(at + place.size(), 1, "/") == 0;
-    text.replace(at, place.size() + (inside ? 1 : 0), inside ? "" : "the data folder");
-  }
-  return text;
-}
 
 std::span<const Route> all_routes() { return kRoutes; }
 

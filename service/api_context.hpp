@@ -61,9 +61,6 @@ struct RouteRequest {
 [[nodiscard]] Job find_job(const ApiContext& context, const std::string& id);
 /// The job's JSON, with what the scheduler knows of it now.
 [[nodiscard]] nlohmann::ordered_json document_of(const ApiContext& context, const Job& job);
-/// A message without the place of the data folder, which is nobody's business but the
-/// administrator's.
-[[nodiscard]] std::string without_place(std::string text, const std::filesystem::path& data);
 /// The study that the request names. Throws ApiError(no_such_study).
 [[nodiscard]] StudyRecord find_study(const ApiContext& context, const std::string& id);
 

@@ -33,9 +33,7 @@ std::vector<JobFileEntry> entries_of(const JobPaths& paths) {
       {paths.report(), "report"},      {paths.report_markdown(), "report"},
       {paths.report_html(), "report"}, {paths.log(), "log"}};
   for (auto& path : paths.checkpoints()) entries.push_back({std::move(path), "checkpoint"});
-  if (!std::filesystem::is_symlink(paths.frames())) {
-    for (auto& path : paths.frame_files()) entries.push_back({std::move(path), "frame"});
-  }
+  for (auto& path : frames_of(paths)) entries.push_back({std::move(path), "frame"});
   return entries;
 }
 
@@ -76,6 +74,11 @@ std::optional<Json> describe(const JobFileEntry& entry, const std::string& id) {
 bool is_regular(const std::filesystem::path& path) {
   std::error_code missing;
   return std::filesystem::is_regular_file(std::filesystem::symlink_status(path, missing));
+}
+
+std::vector<std::filesystem::path> frames_of(const JobPaths& paths) {
+  if (std::filesystem::is_symlink(paths.frames())) return {};
+  return paths.frame_files();
 }
 
 Response show_log(ApiContext& context, const RouteRequest& request) {

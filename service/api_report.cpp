@@ -42,7 +42,7 @@ std::uint64_t bytes_read(const JobPaths& paths) {
   std::error_code none;
   const std::uintmax_t series =
       is_regular(paths.series()) ? std::filesystem::file_size(paths.series()) : 0;
-  const auto frames = paths.frame_files();
+  const auto frames = frames_of(paths);
   const std::uintmax_t frame =
       frames.empty() ? 0 : std::filesystem::file_size(frames.front(), none);
   return series + (none ? 0 : kPictures * frame);

@@ -25,6 +25,9 @@ inline constexpr std::string_view kPagePolicy =
 
 /// Whether the path is a file and no link to one.
 [[nodiscard]] bool is_regular(const std::filesystem::path& path);
+/// The frames of a job; none behind a link. Throws StorageError(corrupt) when something else has
+/// their folder's name.
+[[nodiscard]] std::vector<std::filesystem::path> frames_of(const JobPaths& paths);
 
 // api_submit.cpp
 Response submit_job(ApiContext& context, const RouteRequest& request);

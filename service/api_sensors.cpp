@@ -6,6 +6,7 @@
 
 #include "engine/scene/parse.hpp"
 #include "engine/scene/problems.hpp"
+#include "engine/store/errors.hpp"
 #include "engine/store/file_system.hpp"
 #include "engine/store/series_file.hpp"
 #include "service/api_routes.hpp"
@@ -25,10 +26,14 @@ enum class Format { json, csv };
 
 Scene scene_of(const ApiContext& context, const Job& job) {
   const JobPaths paths = context.paths(job.id);
+  const auto damaged = [&](std::string_view how) {
+    return StorageError(StorageFault::corrupt,
+                        fmt::format("the scene in the folder of job {} {}", job.id, how));
+  };
+  if (!is_present(paths.scene())) throw damaged("is gone");
   ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
   if (result.scene) return *std::move(result.scene);
-  throw ApiError(ProblemType::internal,
-                 fmt::format("the scene in the folder of job {} was altered", job.id));
+  throw damaged("was altered");
 }
 
 void require_sensor(const Scene& scene, const std::string& name) {

@@ -157,7 +157,7 @@ int exit_code_of(const AttemptFacts& facts) {
 std::optional<FreshOutcome> fresh_outcome(const JobPaths& paths, const Job& job) {
   if (!written_since(paths.outcome(), job.started_ms)) return {};
   try {
-    return told_outcome(read_text(paths.outcome(), kLongestOutcome), job);
+    return told_outcome(read_text(paths.outcome(), kLongestOutcome, Links::refuse), job);
   } catch (const StorageError&) {
     return {};
   }

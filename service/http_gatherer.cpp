@@ -13,6 +13,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "engine/sph/new_thread.hpp"
 #include "service/http_response.hpp"
 #include "service/problem.hpp"
 
@@ -43,7 +44,7 @@ HttpGatherer::HttpGatherer(const HttpOptions& options, Taker taker, HttpServer::
   if (poll_.get() < 0 || wake_.get() < 0) throw system_failure("cannot wait for connections");
   watch(listener_.socket.get());
   watch(wake_.get());
-  thread_ = std::thread([this] { gather(); });
+  thread_ = new_thread([this] { gather(); });
 }
 
 HttpGatherer::~HttpGatherer() { stop(); }

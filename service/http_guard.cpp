@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "engine/store/file_system.hpp"
+#include "service/http_head.hpp"
 #include "service/problem.hpp"
 
 namespace sluice {
@@ -38,9 +39,9 @@ bool is_address(const std::string& name) {
 }
 
 bool is_allowed_host(std::string_view host, const GuardOptions& options) {
-  const std::string name(host_name(host));
+  const std::string name = lower(host_name(host));
   return name == "localhost" || is_address(name) ||
-         std::ranges::find(options.host_names, name) != options.host_names.end();
+         std::ranges::find(options.host_names, name, lower) != options.host_names.end();
 }
 
 bool changes(const Request& request) {
@@ -53,8 +54,10 @@ bool is_foreign_page(const Request& request) {
   if (!site.empty() && site != "same-origin" && site != "none") return true;
   const auto origin = request.headers.find("origin");
   if (origin == request.headers.end()) return false;
-  const std::string host(request.header("host"));
-  return origin->second != "http://" + host && origin->second != "https://" + host;
+  // Browsers write both in small letters, but a Host may come from elsewhere.
+  const std::string host = lower(request.header("host"));
+  const std::string page = lower(origin->second);
+  return page != "http://" + host && page != "https://" + host;
 }
 
 bool has_token(const Request& request, const std::string& token) {

@@ -47,14 +47,6 @@ bool is_token(std::string_view text) {
   });
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
 std::string_view trim(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
@@ -130,7 +122,7 @@ void read_target(std::string_view target, const HttpLimits& limits, Request& req
   if (!plain || !target.starts_with('/')) {
     refuse("the request target must be a path of printable ASCII that begins with /");
   }
-  target = target.substr(0, target.find('#'));
+  if (target.find('#') != target.npos) refuse("the request target holds a #: leave it out");
   const std::size_t mark = std::min(target.find('?'), target.size());
   request.path = decoded(target.substr(0, mark), PlusSign::literal);
   read_query(target.substr(std::min(mark + 1, target.size())), request);
@@ -230,6 +222,14 @@ RequestHead read_head(std::string_view head, const HttpLimits& limits) {
 }
 
 }  // namespace
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
 
 std::optional<std::string> decode_percent(std::string_view text, PlusSign plus) {
   std::string result;

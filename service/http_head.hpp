@@ -52,4 +52,7 @@ struct HeadEnd {
 enum class PlusSign { literal, space };
 [[nodiscard]] std::optional<std::string> decode_percent(std::string_view text, PlusSign plus);
 
+/// ASCII letters made small.
+[[nodiscard]] std::string lower(std::string_view text);
+
 }  // namespace sluice

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/sph/new_thread.hpp"
 #include "service/http_gatherer.hpp"
 #include "service/http_response.hpp"
 #include "service/http_socket.hpp"
@@ -75,8 +76,13 @@ class HttpServer::Impl {
               enqueue({std::move(connection), std::move(whole)});
             },
             observer_) {
-    for (int n = 0; n < options_.threads; ++n) threads_.emplace_back([this] { work(common_); });
-    threads_.emplace_back([this] { work(apart_); });
+    try {
+      for (int n = 0; n < options_.threads; ++n) add_thread(common_);
+      add_thread(apart_);
+    } catch (...) {
+      stop();
+      throw;
+    }
   }
 
   ~Impl() { stop(); }
@@ -98,6 +104,10 @@ class HttpServer::Impl {
     std::deque<Work> queue;
     std::condition_variable work_there;
   };
+
+  void add_thread(Lane& lane) {
+    threads_.push_back(new_thread([this, &lane] { work(lane); }));
+  }
 
   void enqueue(Work work) {
     const auto& apart = options_.apart;

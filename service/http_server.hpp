@@ -57,7 +57,8 @@ class HttpServer {
   using Observer = std::function<void(const AccessRecord&)>;
 
   /// Listens from here on. Throws std::runtime_error: the address is no address or is taken, or it
-  /// can be reached from other machines and there is no token.
+  /// can be reached from other machines and there is no token. Also when the system refuses one of
+  /// its threads (std::system_error): with fewer, what may hold them for long would take them all.
   HttpServer(HttpOptions options, Handler handler, Observer observer);
   /// Stops.
   ~HttpServer();

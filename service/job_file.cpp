@@ -90,7 +90,7 @@ void write_job_file(const fs::path& folder, const JobFile& file) {
 
 JobFile read_job_file(const fs::path& folder) {
   const fs::path path = job_file_path(folder);
-  const std::string text = read_text(path, kLargestFile);
+  const std::string text = read_text(path, kLargestFile, Links::refuse);
   try {
     return from_json(read_stored_json(text));
   } catch (const std::exception& error) {

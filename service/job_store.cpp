@@ -41,6 +41,14 @@ Job fresh_job(const Job& wanted, std::string id, std::int64_t now_ms) {
   return job;
 }
 
+Job ended(Job job) {
+  if (is_ended(job.state)) return job;
+  throw JobStoreError(Fault::conflict,
+                      fmt::format("job {} is {}: only a job that has ended can be deleted; cancel "
+                                  "it first",
+                                  job.id, to_string(job.state)));
+}
+
 }  // namespace
 
 JobStore::JobStore(const std::filesystem::path& data) : impl_(std::make_unique<Impl>(data)) {}
@@ -142,14 +150,15 @@ void JobStore::record_event(const std::string& id, const std::string& name,
   impl_->commit_with_event(transaction, {0, id, unix_time_ms(), name, detail});
 }
 
+Job JobStore::require_ended(const std::string& id) const {
+  const Impl::Lock lock = impl_->hold();
+  return ended(impl_->require_job(id));
+}
+
 void JobStore::remove(const std::string& id) {
   const Impl::Lock lock = impl_->hold();
   SqliteTransaction transaction(impl_->db());
-  const Job job = impl_->require_job(id);
-  if (!is_ended(job.state)) {
-    throw JobStoreError(Fault::conflict, fmt::format("job {} is {}: cancel it before it is deleted",
-                                                     id, to_string(job.state)));
-  }
+  (void)ended(impl_->require_job(id));
   SqliteStatement(impl_->db(), "DELETE FROM jobs WHERE id = ?1", id).run();
   transaction.commit();
   impl_->notify();

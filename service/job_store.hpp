@@ -122,6 +122,9 @@ class JobStore {
   void record_progress(const std::string& id, const std::string& token,
                        const std::string& progress);
   void record_event(const std::string& id, const std::string& name, const std::string& detail);
+  /// The job, if it has ended: throws not_found or conflict. It then stays so for whoever is alone
+  /// with it.
+  [[nodiscard]] Job require_ended(const std::string& id) const;
   /// Ended jobs only (conflict otherwise), with their events and key. The folder is the caller's to
   /// remove (retention.hpp).
   void remove(const std::string& id);

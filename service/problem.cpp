@@ -67,6 +67,8 @@ constexpr std::array kProblems{
                  "Send at most 100 header lines of 16 KiB together."},
     ProblemEntry{internal, 500, "internal", "The service failed",
                  "See the service's log; the request changed nothing that it did not report."},
+    ProblemEntry{damaged_files, 500, "damaged-files", "Files of the job or study are damaged",
+                 "Bring its folder back from a copy, or delete it; all else goes on."},
     ProblemEntry{not_implemented, 501, "not-implemented", "Not implemented",
                  "Send a body with Content-Length and without Transfer-Encoding."},
     ProblemEntry{draining, 503, "draining", "The service is stopping",
@@ -102,6 +104,15 @@ Response problem_response(ProblemType type, std::string_view detail, const Probl
   Response response = json_response(entry.status, body);
   response.content_type = "application/problem+json";
   return response;
+}
+
+std::string without_place(std::string text, const std::filesystem::path& data) {
+  const std::string place = data.string();
+  for (auto at = text.find(place); at != text.npos; at = text.find(place, at)) {
+    const bool inside = text.compare(at + place.size(), 1, "/") == 0;
+    text.replace(at, place.size() + (inside ? 1 : 0), inside ? "" : "the data folder");
+  }
+  return text;
 }
 
 Response text_response(std::string body, std::string_view type) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
@@ -39,6 +40,7 @@ enum class ProblemType {
   key_reused,
   headers_too_large,
   internal,
+  damaged_files,
   not_implemented,
   draining,
   queue_full,
@@ -80,6 +82,10 @@ class ApiError : public std::runtime_error {
   ProblemType type_;
   ProblemFields fields_;
 };
+
+/// A message without the place of the data folder, which is nobody's business but the
+/// administrator's.
+[[nodiscard]] std::string without_place(std::string text, const std::filesystem::path& data);
 
 /// A text of this media type as a response.
 [[nodiscard]] Response text_response(std::string body, std::string_view type);

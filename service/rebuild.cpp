@@ -38,9 +38,11 @@ std::int64_t write_time_ms(const fs::path& path) {
   return std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
 }
 
+/// A link is there too, also one that leads nowhere or to itself.
 bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
+  std::error_code error;
+  const fs::file_type type = fs::symlink_status(path, error).type();
+  return type != fs::file_type::none && type != fs::file_type::not_found;
 }
 
 /// What the last attempt that ended left behind.
@@ -55,7 +57,8 @@ std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& re
   if (!is_present(paths.outcome())) return std::nullopt;
   try {
     Ending ending;
-    const auto object = read_stored_json(read_text(paths.outcome(), kMaxStoredBytes));
+    const auto object =
+        read_stored_json(read_text(paths.outcome(), kMaxStoredBytes, Links::refuse));
     ending.text = object.dump();
     ending.exit_code = object.at("exit_code").get<int>();
     ending.reason = object.at("reason").get<std::string>();
@@ -89,7 +92,8 @@ std::optional<JobFile> read_file(const JobPaths& paths, const RebuildReport& rep
 }
 
 Scene read_scene(const JobPaths& paths) {
-  const ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1));
+  const ParseResult result =
+      parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
   if (!result.scene) {
     const Problem& problem = result.problems.front();
     throw std::runtime_error(

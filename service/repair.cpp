@@ -29,7 +29,7 @@ void settle_deletion(const JobStore& store, const fs::path& data, const std::str
 
 /// Whether the scene ends at another time than the row says.
 bool ends_elsewhere(const JobPaths& paths, const Job& job) {
-  const auto scene = read_stored_json(read_text(paths.scene(), kMaxSceneBytes + 1));
+  const auto scene = read_stored_json(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
   const auto end_time = scene.find("end_time");
   return end_time != scene.end() && end_time->is_number() &&
          end_time->get<double>() != job.end_time;

@@ -22,24 +22,25 @@ constexpr std::string_view kDeletedPrefix = ".deleted-";
 constexpr std::size_t kEndedPage = 500;
 
 /// A study keeps what its run came to.
-void keep_for_study(const JobStore& store, const fs::path& data, const std::string& id) {
-  const auto job = store.find(id);
-  if (!job || !is_ended(job->state) || !is_study_id(job->label)) return;
-  const JobPaths paths(data / "jobs" / id);
+void keep_for_study(const fs::path& data, const Job& job) {
+  if (!is_study_id(job.label)) return;
+  const JobPaths paths(data / "jobs" / job.id);
   std::string report;
   try {
-    report = read_text(paths.report(), JobPaths::kLargestReport);
+    report = read_text(paths.report(), JobPaths::kLargestReport, Links::refuse);
   } catch (const StorageError&) {
     // There is none, or none that says anything.
   }
-  keep_run(data, job->label, job->name, {std::string(to_string(job->state)), job->reason, report});
+  keep_run(data, job.label, job.name, {std::string(to_string(job.state)), job.reason, report});
 }
 
 /// The row with its folder, or neither. Returns where the folder is now.
 fs::path take_away(JobStore& store, const fs::path& data, const std::string& id,
                    FileSystem& system) {
   const auto alone = store.alone_with(id);
-  keep_for_study(store, data, id);
+  // Before anything moves, and for good: only one who is alone with it resumes an ended job. So no
+  // job that waits or runs misses its folder, not for a moment.
+  keep_for_study(data, store.require_ended(id));
   const fs::path root = data / "jobs" / id;
   const fs::path hidden = deleted_folder(data, id);
   const bool moved = system.rename(root, hidden) == 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "engine/sph/new_thread.hpp"
 #include "service/admission.hpp"
 #include "service/queue_view.hpp"
 #include "service/scheduler_board.hpp"
@@ -36,10 +37,10 @@ class Scheduler::Impl {
         clock_(senses.clock),
         queue_(store),
         loop_(store, std::filesystem::absolute(data), limits, worker, senses, queue_, board_),
-        thread_([this] {
+        thread_(new_thread([this] {
           loop_.run();
           board_.note_drained();
-        }) {}
+        })) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/store/errors.hpp"
+#include "service/problem.hpp"
 #include "service/retention.hpp"
 #include "service/scheduler_loop.hpp"
 #include "service/service_log.hpp"
@@ -168,11 +169,16 @@ bool SchedulerLoop::head_waits_for_room(int free, const std::vector<std::string>
 }
 
 bool SchedulerLoop::start(const Job& job) {
-  AttemptVerdict verdict;
-  if (!JobFolder::holds_job(paths(job).root())) {
-    verdict.action = JobAction::fail;
-    verdict.change.reason = "its folder, or the scene in it, is gone";
-    conclusions_.conclude(job, std::move(verdict), senses_.clock());
+  try {
+    if (!JobFolder::holds_job(paths(job).root())) {
+      AttemptVerdict verdict;
+      verdict.action = JobAction::fail;
+      verdict.change.reason = "its folder, or the scene in it, is gone";
+      conclusions_.conclude(job, std::move(verdict), senses_.clock());
+      return true;
+    }
+  } catch (const StorageError& error) {
+    put_off(job, "its folder cannot be looked at: " + without_place(error.what(), data_));
     return true;
   }
   try {
@@ -182,19 +188,23 @@ bool SchedulerLoop::start(const Job& job) {
     record(attempt, {{"worker_started", detail_text(detail), {}, {}}});
     return true;
   } catch (const WorkerStartError& error) {
-    const int refusals = conclusions_.back_offs().count(job.id, NextTry::after_refusal) + 1;
-    std::string reason = error.what();
-    if (refusals >= kMostRefusals) {
-      verdict.action = JobAction::pause;
-      reason += fmt::format("; tried {} times: mend this, then resume the job", refusals);
-    }
-    log_scheduler(fmt::format("job {}: {}", job.id, reason));
-    verdict.change.event_detail = detail_text({{"reason", reason}});
-    verdict.change.reason = std::move(reason);
-    verdict.next = NextTry::after_refusal;
-    conclusions_.conclude(job, std::move(verdict), senses_.clock());
+    put_off(job, error.what());
     return false;
   }
+}
+
+void SchedulerLoop::put_off(const Job& job, std::string reason) {
+  AttemptVerdict verdict;
+  const int refusals = conclusions_.back_offs().count(job.id, NextTry::after_refusal) + 1;
+  if (refusals >= kMostRefusals) {
+    verdict.action = JobAction::pause;
+    reason += fmt::format("; tried {} times: mend this, then resume the job", refusals);
+  }
+  log_scheduler(fmt::format("job {}: {}", job.id, reason));
+  verdict.change.event_detail = detail_text({{"reason", reason}});
+  verdict.change.reason = std::move(reason);
+  verdict.next = NextTry::after_refusal;
+  conclusions_.conclude(job, std::move(verdict), senses_.clock());
 }
 
 }  // namespace sluice

@@ -53,6 +53,8 @@ class SchedulerLoop {
   void delete_old_jobs_when_due();
   /// False when the system refused, as it would refuse the next one too.
   bool start(const Job& job);
+  /// Back into the queue for a while, or paused when that was so too often; no crash.
+  void put_off(const Job& job, std::string reason);
   [[nodiscard]] bool head_waits_for_room(int free, const std::vector<std::string>& except);
   [[nodiscard]] int free_threads() const;
   [[nodiscard]] JobPaths paths(const Job& job) const;

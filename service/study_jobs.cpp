@@ -86,6 +86,17 @@ StudyPlan admit_study(std::string_view text, const ServiceLimits& limits) {
   return plan;
 }
 
+StudyPlan plan_of_study(const StudyStore& studies, const StudyRecord& study) {
+  StudyPlan plan =
+      plan_study(studies.document(study.id), nullptr, nullptr, kMaxStudyRuns, SceneOrigin::study);
+  if (plan.problems.empty()) return plan;
+  const Problem& problem = plan.problems.front();
+  throw StorageError(
+      StorageFault::corrupt,
+      fmt::format("study {}: its study.json is damaged: {}{}{}", study.id, problem.pointer,
+                  problem.pointer.empty() ? "" : ": ", problem.message));
+}
+
 std::map<std::string, Job> jobs_of_study(const JobStore& store, const StudyRecord& study) {
   JobFilter filter;
   filter.label = study.id;
@@ -125,9 +136,7 @@ void make_study_jobs(ApiContext& context, const StudyRecord& study, const StudyP
 void finish_studies(ApiContext& context) {
   for (const StudyRecord& study : context.studies.unfinished()) {
     try {
-      const StudyPlan plan = plan_study(context.studies.document(study.id), nullptr, nullptr,
-                                        kMaxStudyRuns, SceneOrigin::study);
-      make_study_jobs(context, study, plan);
+      make_study_jobs(context, study, plan_of_study(context.studies, study));
     } catch (const std::exception& error) {
       // The study stays as it is, and the next start tries again.
       log_line({{"event", "study_unfinished"}, {"study", study.id}, {"message", error.what()}});

@@ -14,6 +14,9 @@ namespace sluice {
 /// predicted to be unstable are taken: finding out is what a study is for.
 [[nodiscard]] StudyPlan admit_study(std::string_view text, const ServiceLimits& limits);
 
+/// The plan of a study that was taken. Throws StorageError(corrupt) when its study.json is damaged.
+[[nodiscard]] StudyPlan plan_of_study(const StudyStore& studies, const StudyRecord& study);
+
 /// The study's jobs by the names of their runs.
 [[nodiscard]] std::map<std::string, Job> jobs_of_study(const JobStore& store,
                                                        const StudyRecord& study);
@@ -22,8 +25,8 @@ namespace sluice {
 /// notes that it is made. Throws JobStoreError(full), StorageError.
 void make_study_jobs(ApiContext& context, const StudyRecord& study, const StudyPlan& plan);
 
-/// Does for every study what a crash left undone. One that cannot be made now is left for the next
-/// start.
+/// Does for every study what a crash left undone. One that cannot be made now is a line in the log,
+/// and left for the next start.
 void finish_studies(ApiContext& context);
 
 }  // namespace sluice

@@ -1,5 +1,7 @@
 #include "service/study_store.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cerrno>
 #include <nlohmann/json.hpp>
@@ -12,6 +14,7 @@
 #include "engine/store/new_folder.hpp"
 #include "engine/store/publish.hpp"
 #include "service/job_ids.hpp"
+#include "service/service_log.hpp"
 
 namespace sluice {
 namespace {
@@ -61,16 +64,22 @@ StudyRecord from_json(const std::string& id, const json& object) {
   return record;
 }
 
-std::optional<StudyRecord> read_record(const fs::path& folder) {
-  try {
-    return from_json(folder.filename().string(),
-                     read_stored_json(read_text(submission_in(folder), kMaxStoredBytes)));
-  } catch (const StorageError& error) {
-    if (error.fault() == StorageFault::io) throw;
-    return std::nullopt;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
+StudyRecord read_record(const fs::path& folder) {
+  return from_json(
+      folder.filename().string(),
+      read_stored_json(read_text(submission_in(folder), kMaxStoredBytes, Links::refuse)));
+}
+
+bool is_missing(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() == fs::file_type::not_found;
+}
+
+/// A study that cannot be read must hide no other.
+void pass_over(const fs::path& folder, const std::exception& error) {
+  log_line({{"event", "study_passed_over"},
+            {"study", folder.filename().string()},
+            {"message", error.what()}});
 }
 
 }  // namespace
@@ -83,21 +92,35 @@ StudyStore::StudyStore(const fs::path& data, FileSystem& system)
 }
 
 void StudyStore::read_all() {
-  std::vector<fs::path> broken;
+  std::vector<fs::path> folders;
   for (const fs::directory_entry& entry : fs::directory_iterator(root_)) {
-    const fs::path& path = entry.path();
-    if (entry.is_symlink() || !entry.is_directory() || !is_study_id(path.filename().string())) {
-      continue;
-    }
-    remove_leftovers(path);
-    remove_leftovers(kept_in(path, "").parent_path());
-    if (!fs::exists(submission_in(path))) {
-      broken.push_back(path);
-    } else if (auto record = read_record(path)) {
-      records_.emplace(record->id, *std::move(record));
+    if (is_study_id(entry.path().filename().string())) folders.push_back(entry.path());
+  }
+  for (const fs::path& path : folders) {
+    try {
+      read_folder(path);
+    } catch (const std::exception& error) {
+      pass_over(path, error);
     }
   }
-  for (const fs::path& path : broken) fs::remove_all(path);
+}
+
+void StudyStore::read_folder(const fs::path& path) {
+  if (fs::symlink_status(path).type() != fs::file_type::directory) return;
+  remove_leftovers(path);
+  remove_leftovers(kept_in(path, "").parent_path());
+  if (is_missing(submission_in(path))) {
+    fs::remove_all(path);
+    return;
+  }
+  StudyRecord record;
+  try {
+    record = read_record(path);
+  } catch (const StorageError&) {
+    // Once more: a passing error of the disk must not hide it until the next start.
+    record = read_record(path);
+  }
+  records_.emplace(record.id, std::move(record));
 }
 
 void StudyStore::write(const StudyRecord& record) const {
@@ -172,7 +195,11 @@ std::vector<StudyRecord> StudyStore::unfinished() const {
 }
 
 std::string StudyStore::document(const std::string& id) const {
-  return read_text(document_in(folder(id)), kMaxSceneBytes + 1);
+  const fs::path path = document_in(folder(id));
+  if (is_missing(path)) {
+    throw StorageError(StorageFault::corrupt, fmt::format("{}: it is missing", path.string()));
+  }
+  return read_text(path, kMaxSceneBytes + 1, Links::refuse);
 }
 
 std::optional<KeptRun> StudyStore::kept_run(const std::string& id, const std::string& run) const {
@@ -180,7 +207,7 @@ std::optional<KeptRun> StudyStore::kept_run(const std::string& id, const std::st
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::nullopt;
   try {
-    const json object = read_stored_json(read_text(path, kMaxStoredBytes));
+    const json object = read_stored_json(read_text(path, kMaxStoredBytes, Links::refuse));
     return KeptRun{object.at("state").get<std::string>(), object.at("reason").get<std::string>(),
                    object.at("report").get<std::string>()};
   } catch (const std::exception&) {

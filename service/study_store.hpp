@@ -43,7 +43,8 @@ struct KeptRun {
 class StudyStore {
  public:
   /// Reads what is there; what a submission cut short left is removed, and so is a folder without
-  /// submission.json, which a removal cut short left.
+  /// submission.json, which a removal cut short left. A study that cannot be read is a line in the
+  /// log, and is passed over.
   explicit StudyStore(const std::filesystem::path& data, FileSystem& system = FileSystem::real());
 
   void add(const StudyRecord& record, std::string_view document);
@@ -56,6 +57,7 @@ class StudyStore {
   [[nodiscard]] std::vector<StudyRecord> list(const std::string& after, std::size_t limit) const;
   /// Those whose jobs are not all made, oldest first.
   [[nodiscard]] std::vector<StudyRecord> unfinished() const;
+  /// study.json, of at most the size of a body. corrupt: it is missing or no file.
   [[nodiscard]] std::string document(const std::string& id) const;
   [[nodiscard]] std::optional<KeptRun> kept_run(const std::string& id,
                                                 const std::string& run) const;
@@ -63,6 +65,7 @@ class StudyStore {
  private:
   [[nodiscard]] std::filesystem::path folder(const std::string& id) const { return root_ / id; }
   void read_all();
+  void read_folder(const std::filesystem::path& path);
   void write(const StudyRecord& record) const;
 
   std::filesystem::path root_;

@@ -42,7 +42,7 @@ StudyRow row_of_kept(const StudyStore& studies, const StudyRecord& record, const
 
 std::string report_text(const ApiContext& context, const std::string& id) {
   try {
-    return read_text(context.paths(id).report(), JobPaths::kLargestReport);
+    return read_text(context.paths(id).report(), JobPaths::kLargestReport, Links::refuse);
   } catch (const StorageError&) {
     return {};
   }
@@ -120,8 +120,7 @@ void add_jobs(Json& runs, const StudyView& view) {
 }  // namespace
 
 StudyView view_study(const ApiContext& context, const StudyRecord& record) {
-  StudyPlan plan = plan_study(context.studies.document(record.id), nullptr, nullptr, kMaxStudyRuns,
-                              SceneOrigin::study);
+  StudyPlan plan = plan_of_study(context.studies, record);
   auto jobs = jobs_of_study(context.store, record);
   StudyView view{record, {}, {}};
   std::vector<StudyRow> rows;

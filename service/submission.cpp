@@ -7,6 +7,7 @@
 
 #include "engine/store/new_folder.hpp"
 #include "engine/store/sha256.hpp"
+#include "service/http_head.hpp"
 #include "service/problem.hpp"
 
 namespace sluice {
@@ -20,7 +21,7 @@ constexpr std::size_t kLongestKey = 128;
 
 void require_json(const Request& request, std::string_view what) {
   const std::string_view type = request.header("content-type");
-  const std::string_view media = type.substr(0, type.find_first_of("; \t"));
+  const std::string media = lower(type.substr(0, type.find_first_of("; \t")));
   for (const std::string_view known :
        {"", "application/json", "application/x-www-form-urlencoded", "text/plain"}) {
     if (media == known) return;

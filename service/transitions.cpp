@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "service/job_json.hpp"
+#include "service/worker_exit.hpp"
 
 namespace sluice {
 namespace {
@@ -78,10 +80,23 @@ std::string describe(const Job& job) {
                      asked ? fmt::format(" and was asked to {}", to_string(job.pending_stop)) : "");
 }
 
+/// What ends a computation comes again, bit by bit, at the same step.
+bool would_fail_again(const Job& job) {
+  if (job.state != JobState::failed) return false;
+  const auto outcome = stored_json(job.outcome);
+  return outcome.is_object() && outcome.contains("exit_code") &&
+         outcome["exit_code"] == WorkerExit::numerical_failure;
+}
+
+constexpr std::string_view kFailsAgain =
+    "its computation would fail again at the same step, also with a later end time: submit a "
+    "changed scene";
+
 std::string advice(const Job& job, JobAction action) {
   if (action == JobAction::resume && job.pending_stop == PendingStop::cancel) {
     return "wait until it is cancelled, then resume it";
   }
+  if (would_fail_again(job)) return "it has ended, and " + std::string(kFailsAgain);
   if (is_ended(job.state)) return "it has ended; resume it with a later end time to go on";
   return "see the table of transitions in service/README.md";
 }
@@ -90,6 +105,9 @@ std::string advice(const Job& job, JobAction action) {
 void check_end_time(const Job& job, const Transition& transition, const JobChange& change) {
   const double wanted = change.end_time.value_or(job.end_time);
   if (wanted == job.end_time && !transition.needs_later_end) return;
+  if (!(wanted > job.end_time) && would_fail_again(job)) {
+    refuse(fmt::format("{}: {}", describe(job), kFailsAgain));
+  }
   if (!(wanted > job.end_time)) {
     refuse(fmt::format("{} with end time {} s, and {} s is not later: give a later end time",
                        describe(job), job.end_time, wanted));

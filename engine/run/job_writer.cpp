@@ -4,25 +4,20 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/run/insist.hpp"
 #include "engine/store/frame_io.hpp"
 #include "engine/store/series_file.hpp"
+#include "engine/store/trailer.hpp"
 
 namespace sluice {
-namespace {
-
-/// Whether trying again can help.
-bool may_pass(const StorageError& error) {
-  return error.fault() != StorageFault::invalid_content && error.fault() != StorageFault::lost;
-}
-
-}  // namespace
-
-JobWriter::JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter)
+JobWriter::JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter,
+                     std::function<bool()> hurried)
     : folder_(&folder),
       options_(options),
       reporter_(&reporter),
+      hurried_(std::move(hurried)),
       backoff_(options.storage_patience),
       next_series_(series_interval(0.0)) {}
 
@@ -43,7 +38,7 @@ void JobWriter::checkpoint_soon(const Simulation& simulation) {
     backoff_.succeeded();
   } catch (const StorageError& error) {
     backoff_.failed(now);
-    if (backoff_.exhausted() || !may_pass(error)) throw;
+    if (backoff_.exhausted() || !may_pass(error.fault())) throw;
     warn("a checkpoint", error, backoff_.next_try() - now);
   }
 }
@@ -114,7 +109,7 @@ void JobWriter::refresh_series(const Simulation& simulation) {
       write_series(folder_->paths().series(), simulation.samples());
     });
   } catch (const StorageError& error) {
-    if (!may_pass(error)) throw;
+    if (!may_pass(error.fault())) throw;
     warn("series.h5", error, 10.0);
     next_series_ = start + 10.0;
     return;
@@ -140,7 +135,19 @@ void JobWriter::write_outcome(const Outcome& outcome) {
   insist(
       patience,
       [&] { folder_->publish_text(folder_->paths().outcome(), to_json(outcome).dump(2) + "\n"); },
-      [&](const StorageError& error, double wait) { warn("outcome.json", error, wait); });
+      [&](const StorageError& error, double wait) { warn("outcome.json", error, wait); }, hurried_);
+}
+
+std::optional<std::filesystem::path> JobWriter::whole_checkpoint() const {
+  if (!checkpoint_step_) return {};
+  const auto path = folder_->paths().checkpoint(*checkpoint_step_);
+  try {
+    folder_->require_held();
+    verify(path);
+    return path;
+  } catch (const StorageError&) {
+    return {};
+  }
 }
 
 std::optional<double> JobWriter::checkpoint_age() const {
@@ -155,10 +162,9 @@ void JobWriter::account(Account& account) const {
 }
 
 void JobWriter::persist(std::string_view what, const std::function<void()>& write) {
-  insist(options_.storage_patience, write, [&](const StorageError& error, double wait) {
-    if (!may_pass(error)) throw error;
-    warn(what, error, wait);
-  });
+  insist(
+      options_.storage_patience, write,
+      [&](const StorageError& error, double wait) { warn(what, error, wait); }, hurried_);
 }
 
 void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {

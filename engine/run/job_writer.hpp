@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -20,7 +21,9 @@ namespace sluice {
 /// then the StorageError is thrown on.
 class JobWriter {
  public:
-  JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter);
+  /// Where it waits for the disk it hurries as soon as `hurried` says so (insist.hpp).
+  JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter,
+            std::function<bool()> hurried);
 
   /// The step of the checkpoint that the run goes on from: it need not be written again.
   void resumed_at(std::uint64_t step);
@@ -44,6 +47,8 @@ class JobWriter {
   /// Publishes outcome.json, waiting for the disk; once only where the disk has refused already.
   void write_outcome(const Outcome& outcome);
 
+  /// The newest checkpoint of this run, or that it began from, if it is on the disk and whole.
+  [[nodiscard]] std::optional<std::filesystem::path> whole_checkpoint() const;
   /// Seconds since the last checkpoint was safe; nothing before the first.
   [[nodiscard]] std::optional<double> checkpoint_age() const;
   /// Adds what the writing cost.
@@ -59,6 +64,7 @@ class JobWriter {
   JobFolder* folder_;
   RunOptions options_;
   Reporter* reporter_;
+  std::function<bool()> hurried_;
   Stopwatch clock_;
   Backoff backoff_;
   std::optional<std::uint64_t> checkpoint_step_;  ///< step of the newest checkpoint

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/run/build_id.hpp"
+#include "engine/run/insist.hpp"
 #include "engine/run/job_writer.hpp"
 #include "engine/run/machine_name.hpp"
 #include "engine/run/removal_news.hpp"
@@ -32,7 +33,7 @@ class RunLoop {
         signals_(&signals),
         reporter_(&reporter),
         simulation_(&simulation),
-        writer_(folder, options, reporter),
+        writer_(folder, options, reporter, [&signals] { return signals.stop_requested(); }),
         removals_(simulation),
         first_step_(simulation.solver().step_count()),
         first_time_(simulation.solver().time()) {}
@@ -67,8 +68,22 @@ class RunLoop {
     } catch (const NumericalFailure& failure) {
       return fail(failure);
     } catch (const StorageError& error) {
-      return describe(ExitCode::storage_failure, told_outside(folder_->name(), error).what());
+      return stopped_before_the_disk(told_outside(folder_->name(), error));
     }
+  }
+
+  /// One who asked for a stop gets it, also where the disk refuses: what is lost is lost at any
+  /// end, and the run goes on from the checkpoint before.
+  Outcome stopped_before_the_disk(const StorageError& error) const {
+    Outcome outcome = describe(ExitCode::storage_failure, error.what());
+    if (!signals_->stop_requested() || !may_pass(error.fault())) return outcome;
+    if (const auto checkpoint = writer_.whole_checkpoint()) {
+      outcome.exit_code = ExitCode::checkpointed;
+      outcome.reason =
+          fmt::format("stopped by a signal while the disk refused to write; it goes on from {}: {}",
+                      checkpoint->filename().string(), error.what());
+    }
+    return outcome;
   }
 
   void advance_to_end() {

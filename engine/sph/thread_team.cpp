@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "engine/sph/new_thread.hpp"
+
 namespace sluice {
 namespace {
 
@@ -26,10 +28,19 @@ ThreadTeam::ThreadTeam(int threads) {
   const auto helpers = static_cast<std::size_t>(threads > 1 ? threads - 1 : 0);
   shares_ = std::make_unique<Share[]>(2 * (helpers + 1));
   helpers_.reserve(helpers);
-  for (std::size_t i = 0; i < helpers; ++i) helpers_.emplace_back([this, i] { help(i + 1); });
+  try {
+    for (std::size_t i = 0; i < helpers; ++i) {
+      helpers_.push_back(new_thread([this, i] { help(i + 1); }));
+    }
+  } catch (...) {
+    end_helpers();
+    throw;
+  }
 }
 
-ThreadTeam::~ThreadTeam() {
+ThreadTeam::~ThreadTeam() { end_helpers(); }
+
+void ThreadTeam::end_helpers() {
   stop_.store(true, std::memory_order_relaxed);
   state_.fetch_add(kEpoch, std::memory_order_release);
   state_.notify_all();

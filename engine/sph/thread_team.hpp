@@ -94,6 +94,7 @@ class ThreadTeam {
   void work(std::size_t self);
   void help(std::size_t self);
   void keep_failure(std::exception_ptr failure);
+  void end_helpers();
 
   void reset_firsts(std::size_t tasks);
   void finish_first(std::size_t task);

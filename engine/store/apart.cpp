@@ -78,6 +78,7 @@ void part_from_parent(pid_t parent, int output, const ApartLimits& limits,
   const auto kept = static_cast<unsigned>(output);
   if (kept > 3) ::syscall(SYS_close_range, 3U, kept - 1, 0U);
   ::syscall(SYS_close_range, kept + 1, ~0U, 0U);
+  if (limits.nice > 0) static_cast<void>(::nice(limits.nice));
   limit_apart(RLIMIT_CORE, 0);
   limit_apart(RLIMIT_FSIZE, 0);
   limit_apart(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.core_seconds)));

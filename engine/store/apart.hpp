@@ -16,6 +16,7 @@ struct ApartLimits {
   double patience = 60.0;               ///< s until it is killed, whatever it did
   std::uint64_t memory = 256ULL << 20;  ///< bytes beyond what the process has already
   std::uint64_t output = 1ULL << 30;    ///< bytes
+  int nice = 0;  ///< added to the priority of whoever asks: above 0 it gives way to others
   /// For reading and working up files of ours of so many bytes together: many times what it takes.
   [[nodiscard]] static ApartLimits for_bytes(std::uint64_t bytes);
 };

@@ -18,6 +18,11 @@ StorageFault fault_of(int error_number) {
     case EPERM:
     case EROFS:
       return StorageFault::unwritable;
+    case EEXIST:
+    case ENOTDIR:
+    case EISDIR:
+    case ELOOP:
+      return StorageFault::corrupt;
     default:
       return StorageFault::io;
   }
@@ -36,6 +41,11 @@ std::string_view advice_for(int error_number) {
       return "; check owner and permissions";
     case EROFS:
       return "; the disk is mounted read-only";
+    case EEXIST:
+    case ENOTDIR:
+    case EISDIR:
+    case ELOOP:
+      return "; something else has the name of a file or folder of ours: move it away";
     default:
       return "";
   }

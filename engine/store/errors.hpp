@@ -10,16 +10,17 @@ namespace sluice {
 
 /// What kind of storage failure it is, for those who must act on it; the message is for people.
 enum class StorageFault {
-  disk_full,            ///< no room, quota or file size limit reached: make room and go on
-  io,                   ///< the system refused to read, write or rename
-  unwritable,           ///< no permission to write, or mounted read-only
-  corrupt,              ///< a file of ours that is cut short, altered or not laid out as it must be
-  unsupported_version,  ///< written by a newer program
-  wrong_scene,          ///< whole, but of another scene or another integrator
-  invalid_content,      ///< what was to be written breaks the layout's rules; nothing was written
-  not_ours,             ///< not a job folder or not one of our files
-  already_exists,       ///< the folder holds a job already
-  locked,               ///< another process runs this job
+  disk_full,   ///< no room, quota or file size limit reached: make room and go on
+  io,          ///< the system refused to read, write or rename
+  unwritable,  ///< no permission to write, or mounted read-only
+  corrupt,     ///< a file of ours that is cut short, altered or not laid out as it must be, or
+               ///< something else, such as a link, in a file's or folder's place
+  unsupported_version,   ///< written by a newer program
+  wrong_scene,           ///< whole, but of another scene or another integrator
+  invalid_content,       ///< what was to be written breaks the layout's rules; nothing was written
+  not_ours,              ///< not a job folder or not one of our files
+  already_exists,        ///< the folder holds a job already
+  locked,                ///< another process runs this job
   no_usable_checkpoint,  ///< checkpoints exist, none of them can be used
   lost,                  ///< the folder that is held is no longer there, or others may hold it too
 };

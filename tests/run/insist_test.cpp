@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
+
+#include "engine/run/stopwatch.hpp"
 
 namespace sluice {
 namespace {
@@ -63,6 +66,44 @@ TEST(Insist, TakesAWantOfMemoryAndErrorsOfTheFileSystemForPassingOnes) {
     insist(30.0, std::ref(write), [](const StorageError&, double) {});
     EXPECT_EQ(write.tries, 2);
   }
+}
+
+TEST(Insist, WaitsForNothingWhereSomethingElseHasTheName) {
+  for (const std::errc error :
+       {std::errc::file_exists, std::errc::not_a_directory, std::errc::is_a_directory,
+        std::errc::too_many_symbolic_link_levels}) {
+    Write write{1, [error] {
+                  throw std::filesystem::filesystem_error("cannot create directory", "job/frames",
+                                                          std::make_error_code(error));
+                }};
+    EXPECT_THROW(insist(30.0, std::ref(write), [](const StorageError&, double) {}), StorageError);
+    EXPECT_EQ(write.tries, 1) << std::make_error_code(error).message();
+  }
+}
+
+TEST(Insist, AWishToStopEndsTheWaitWithOneMoreTry) {
+  Write write{100};
+  bool hurry = false;
+  const Stopwatch clock;
+  double longest = 0.0;
+  EXPECT_THROW(insist(
+                   1e6, std::ref(write),
+                   [&](const StorageError&, double wait) {
+                     longest = wait;
+                     hurry = wait > 1.5;  // the third wait of Backoff
+                   },
+                   [&] { return hurry; }),
+               StorageError);
+  EXPECT_NEAR(longest, 2.0, 1e-9);
+  EXPECT_EQ(write.tries, 4);
+  EXPECT_LT(clock.seconds(), 0.5 + 1.0 + 1.9) << "the third wait was not waited for";
+}
+
+TEST(Insist, InAHurryStillTriesTwice) {
+  Write write{1};
+  insist(
+      30.0, std::ref(write), [](const StorageError&, double) {}, [] { return true; });
+  EXPECT_EQ(write.tries, 2);
 }
 
 TEST(Insist, NeverTakesAnotherExceptionForAFailureOfTheDisk) {

@@ -7,6 +7,8 @@ import json
 import os
 import pathlib
 import pty
+import re
+import resource
 import select
 import signal
 import subprocess
@@ -98,6 +100,33 @@ class Runs(Stopped):
         os.close(end)
         self.assertEqual(self.code_of(process), 85)
         self.assert_checkpointed("job")
+
+    def test_a_wish_is_heard_while_the_disk_refuses(self):
+        """Files may grow no more, which is to a run as a full disk is: it waits for it with a frame
+        or in between, and ends as a stop, because an older checkpoint is there to go on from."""
+        for name, content in (("between", ENDLESS), ("at-a-frame", scene(end_time=500, output={"frames": {"interval": 0.25}}))):
+            with self.subTest(name):
+                process = self.start("run", self.write_scene(content), "--folder", name, "--threads", 1,
+                                     "--storage-patience", 1000, "--checkpoint-every", 20, stderr=subprocess.PIPE)
+                self.addCleanup(process.stderr.close)
+                self.wait_for(process, "checkpoint")
+                _, most = resource.prlimit(process.pid, resource.RLIMIT_FSIZE)
+                resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (100, most))
+                self.wait_for(process, "warning")
+                time.sleep(2.0)  # well into its waits
+                asked = time.monotonic()
+                process.terminate()
+                process.stdout.read()
+                self.assertEqual(process.wait(), 85)
+                self.assertLess(time.monotonic() - asked, 30.0)
+                said = process.stderr.read()
+                match = re.search(r"it goes on from (checkpoint-\d{12}\.h5)", said)
+                self.assertTrue(match, said)
+                again = self.start("run", name, "--threads", 1)
+                self.assertEqual(self.wait_for(again, "resumed")["file"], match[1])
+                again.terminate()
+                again.stdout.read()
+                self.assertEqual(again.wait(), 85)
 
     def test_the_lock_names_a_process_only_while_it_runs(self):
         path = self.write_scene(scene(end_time=0.05))

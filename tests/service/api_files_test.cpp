@@ -102,6 +102,27 @@ TEST(ApiFiles, AReportThatIsMissingDamagedOrALinkIsMade) {
   EXPECT_EQ(samples(), "stored");
 }
 
+TEST(ApiFiles, OfADamagedJobTellItsDamage) {
+  Service service;
+  const std::string id = service.submit_in(JobState::failed);
+  const auto folder = service.data.job(id);
+  std::filesystem::remove_all(folder / "frames");
+  write_file(folder / "frames", "no folder");
+  for (const char* const path :
+       {"/files", "/files/frame-000000.h5", "/report", "/report?format=html"}) {
+    const Response response = service.get("/v1/jobs/" + id + path);
+    expect_problem(response, 500, "damaged-files");
+    EXPECT_NE(response.body.find(id + "/frames"), std::string::npos) << response.body;
+    EXPECT_EQ(response.body.find(service.data.path().string()), std::string::npos);
+  }
+  std::filesystem::remove(folder / "frames");
+  EXPECT_EQ(service.get("/v1/jobs/" + id + "/files").status, 200);
+  write_file(folder / "scene.json", "{}");
+  expect_problem(service.get("/v1/jobs/" + id + "/sensors"), 500, "damaged-files");
+  std::filesystem::remove(folder / "scene.json");
+  expect_problem(service.get("/v1/jobs/" + id + "/sensors"), 500, "damaged-files");
+}
+
 TEST(ApiFiles, NoRouteFollowsALink) {
   Service service;
   const std::string id = service.submit_in(JobState::running);

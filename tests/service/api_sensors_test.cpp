@@ -1,9 +1,13 @@
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <new>
 #include <random>
 #include <thread>
 
@@ -126,6 +130,8 @@ TEST(ApiSensors, ADamagedFileHurtsNobodyAndIsReadOnce) {
       EXPECT_TRUE(status == 200 || status == 409 || status == 500) << status;
     }
   }
+  write_file(path, good.substr(0, good.size() / 2));
+  expect_problem(service.get("/v1/jobs/" + id + "/sensors/P1"), 500, "damaged-files");
 }
 
 TEST(AnswerMaker, KnowsAFileThatWasNotSurvived) {
@@ -153,6 +159,39 @@ TEST(AnswerMaker, RefusesWhatItHasNoMemoryFor) {
                    data.path() / "file",
                    []() -> std::string { throw ApiError(ProblemType::no_samples_yet, "none"); }),
                ApiError);
+}
+
+TEST(AnswerMaker, HasNoMoreChildrenAtOnceThanItMay) {
+  const DataFolder data;
+  write_file(data.path() / "file", "anything");
+  struct Counts {
+    std::atomic<int> now = 0;
+    std::atomic<int> most = 0;
+  };
+  // Seen by all children.
+  void* const shared =
+      ::mmap(nullptr, sizeof(Counts), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  Counts& counts = *new (shared) Counts;
+  AnswerMaker maker({32, 256 << 20, 60.0, 2});
+  std::vector<std::thread> clients;
+  for (int n = 0; n < 8; ++n) {
+    clients.emplace_back([&] {
+      EXPECT_EQ(maker.from_file(data.path() / "file",
+                                [&] {
+                                  const int now = ++counts.now;
+                                  if (now > counts.most) counts.most = now;
+                                  ::usleep(30'000);
+                                  --counts.now;
+                                  return std::string("done");
+                                }),
+                "done");
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  EXPECT_GE(counts.most, 1);
+  EXPECT_LE(counts.most, 2);
+  ::munmap(shared, sizeof(Counts));
 }
 
 TEST(ApiSensors, MarksWhatAFilterMayStillChangeUntilTheJobHasCompleted) {

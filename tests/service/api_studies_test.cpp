@@ -377,6 +377,104 @@ TEST(ApiStudies, WhatACutShortSubmissionLeftIsRemovedAtTheNextStart) {
   EXPECT_TRUE(studies.list("", 10).empty());
 }
 
+TEST(ApiStudies, ThatAreDamagedSaySoAndHideNoOther) {
+  Service service;
+  const std::string good = submit_study(service)["id"];
+  const std::string bad = submit_study(service)["id"];
+  const fs::path folder = service.data.path() / "studies" / bad;
+  const std::string document = read_file(folder / "study.json");
+  const auto expect_damaged = [&](const char* what) {
+    for (const char* const format : {"json", "markdown", "csv", "svg"}) {
+      SCOPED_TRACE(std::string(what) + " as " + format);
+      const Response response = service.get("/v1/studies/" + bad + "?format=" + format);
+      expect_problem(response, 500, "damaged-files");
+      EXPECT_NE(response.body.find("study.json"), std::string::npos) << response.body;
+      EXPECT_EQ(response.body.find(service.data.path().string()), std::string::npos);
+    }
+    EXPECT_EQ(service.get("/v1/studies/" + good).status, 200);
+    EXPECT_EQ(list_in(service.get("/v1/studies"), "studies").size(), 2U);
+  };
+  write_file(folder / "study.json", "");
+  expect_damaged("empty");
+  write_file(folder / "study.json", document.substr(0, document.size() / 2));
+  expect_damaged("cut short");
+  fs::remove(folder / "study.json");
+  expect_damaged("missing");
+  write_file(service.data.path() / "outside.json", document);
+  fs::create_symlink(service.data.path() / "outside.json", folder / "study.json");
+  expect_damaged("a link");
+
+  EXPECT_EQ(service.post("/v1/studies/" + good + "/cancel").status, 200);
+  EXPECT_EQ(service.post("/v1/studies/" + bad + "/cancel").status, 500) << "done, not shown";
+  EXPECT_EQ(service.ask("DELETE", "/v1/studies/" + bad).status, 204);
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST(ApiStudies, ThatAreDamagedAreNeverTakenForMade) {
+  Service service;
+  const std::string id = submit_study(service)["id"];
+  const fs::path folder = service.data.path() / "studies" / id;
+  Json record = Json::parse(read_file(folder / "submission.json"));
+  record["made"] = false;
+  write_file(folder / "submission.json", record.dump());
+  write_file(folder / "study.json", "{");
+  testing::internal::CaptureStderr();
+  const Api next(service.store, service.scheduler, service.data.path());
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("study_unfinished"), std::string::npos) << log;
+  EXPECT_NE(log.find(id), std::string::npos) << log;
+  EXPECT_EQ(Json::parse(read_file(folder / "submission.json"))["made"], false);
+}
+
+TEST(ApiStudies, ARecordThatCannotBeReadIsPassedOverWithALineInTheLog) {
+  Service service;
+  const std::string good = submit_study(service)["id"];
+  const std::string bad = submit_study(service)["id"];
+  const fs::path submission = service.data.path() / "studies" / bad / "submission.json";
+  const auto started = [&](const char* what) {
+    testing::internal::CaptureStderr();
+    const StudyStore studies(service.data.path());
+    const std::string log = testing::internal::GetCapturedStderr();
+    EXPECT_TRUE(studies.find(good)) << what;
+    EXPECT_FALSE(studies.find(bad)) << what;
+    EXPECT_NE(log.find("study_passed_over"), std::string::npos) << what << log;
+    EXPECT_NE(log.find(bad), std::string::npos) << what << log;
+    EXPECT_TRUE(fs::exists(fs::symlink_status(submission))) << what << ": it may be mended";
+  };
+  write_file(submission, "{");
+  started("cut short");
+  fs::remove(submission);
+  fs::create_symlink(submission.filename(), submission);
+  started("a link to itself");
+  fs::remove(submission);
+  fs::create_directory(submission);
+  started("a folder");
+}
+
+TEST(ApiStudies, FollowNoLink) {
+  Service service;
+  const std::string id = submit_study(service)["id"];
+  const std::string job = complete_next(service, 0.4, 1.0);
+  const fs::path report = service.data.job(job) / "report.json";
+  write_file(service.data.path() / "outside.json",
+             R"({"error": 0.125, "cost": {"core_seconds": 7.0}})");
+  fs::remove(report);
+  fs::create_symlink(service.data.path() / "outside.json", report);
+  EXPECT_TRUE(show(service, id)["runs"][0]["error"].is_null());
+  EXPECT_EQ(service.ask("DELETE", "/v1/jobs/" + job).status, 204);
+  const Json shown = show(service, id);
+  EXPECT_EQ(shown.dump().find("0.125"), std::string::npos) << shown;
+  const fs::path kept = service.data.path() / "studies" / id / "kept";
+  for (const fs::directory_entry& entry : fs::directory_iterator(kept)) {
+    EXPECT_EQ(read_file(entry.path()).find("0.125"), std::string::npos);
+    fs::remove(entry.path());
+    fs::create_symlink(service.data.path() / "kept.json", entry.path());
+  }
+  write_file(service.data.path() / "kept.json",
+             R"({"state": "failed", "reason": "from outside", "report": ""})");
+  EXPECT_EQ(show(service, id).dump().find("from outside"), std::string::npos);
+}
+
 TEST(ApiStudies, NobodyElseMayUseAStudysIdAsALabel) {
   Service service;
   const std::string id = submit_study(service)["id"];

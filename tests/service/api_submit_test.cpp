@@ -201,6 +201,7 @@ TEST(ApiSubmit, TakesWhatCurlSendsAndRefusesOtherForms) {
   };
   EXPECT_EQ(sent_as("application/json").status, 200);
   EXPECT_EQ(sent_as("application/json; charset=utf-8").status, 200);
+  EXPECT_EQ(sent_as("Application/JSON;charset=UTF-8").status, 200);
   EXPECT_EQ(sent_as("application/x-www-form-urlencoded").status, 200);
   expect_problem(sent_as("multipart/form-data; boundary=x"), 415, "unsupported-media-type");
   expect_problem(sent_as("application/jsonp"), 415, "unsupported-media-type");

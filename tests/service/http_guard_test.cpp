@@ -23,9 +23,10 @@ Request with(std::string_view method, std::map<std::string, std::string> headers
 
 TEST(HttpGuard, TakesAddressesLocalhostAndNamesThatWereAllowed) {
   GuardOptions options;
-  options.host_names = {"sluice.example.org"};
-  for (const char* const host : {"localhost", "localhost:8080", "127.0.0.1:1", "[::1]:8080",
-                                 "192.168.1.7", "sluice.example.org", "sluice.example.org:443"}) {
+  options.host_names = {"Sluice.example.org"};
+  for (const char* const host :
+       {"localhost", "localhost:8080", "127.0.0.1:1", "[::1]:8080", "192.168.1.7",
+        "sluice.example.org", "sluice.example.org:443", "LocalHost", "SLUICE.Example.ORG:443"}) {
     EXPECT_FALSE(guard(with("POST", {{"host", host}}), options)) << host;
   }
   for (const char* const host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example",
@@ -37,6 +38,8 @@ TEST(HttpGuard, TakesAddressesLocalhostAndNamesThatWereAllowed) {
 TEST(HttpGuard, TakesChangesFromItsOwnPagesAndFromPrograms) {
   EXPECT_FALSE(
       guard(with("POST", {{"host", "localhost:1"}, {"origin", "http://localhost:1"}}), {}));
+  EXPECT_FALSE(
+      guard(with("POST", {{"host", "LOCALHOST:1"}, {"origin", "http://localhost:1"}}), {}));
   EXPECT_FALSE(guard(with("POST", {{"host", "localhost:1"}}), {}));
   for (const char* const origin :
        {"http://evil.example", "null", "http://localhost:2", "http://localhost", ""}) {

@@ -88,6 +88,8 @@ TEST(HttpHead, RefusesRequestLinesThatAreNone) {
                                  "OPTIONS *a HTTP/1.1",
                                  "GET /a b HTTP/1.1",
                                  "GET /\x80 HTTP/1.1",
+                                 "GET /a#b HTTP/1.1",
+                                 "GET http://h/?a=1#b HTTP/1.1",
                                  "GET /%zz HTTP/1.1",
                                  "GET /%2 HTTP/1.1",
                                  "GET /%00 HTTP/1.1",

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "service/problem.hpp"
 #include "tests/service/api_support.hpp"
 #include "tests/service/http_client.hpp"
+#include "tests/sph/few_threads.hpp"
 
 namespace sluice::test {
 namespace {
@@ -506,6 +508,14 @@ TEST(HttpServerThreads, SurvivesRandomBytes) {
     client.send(bytes);
   }
   EXPECT_EQ(text_of(server.ask(get("/alive"))), "GET /alive ");
+}
+
+TEST(HttpServerThreads, SaysSoWhenTheSystemRefusesAThreadAndEndsThoseThatRun) {
+  if (!kThreadsCanBeRefused) GTEST_SKIP() << "sanitizers need the addresses themselves";
+  const FewThreads few;
+  HttpOptions options = quick_options();
+  options.threads = 200;
+  EXPECT_THROW(Server{options}, std::system_error);
 }
 
 }  // namespace

@@ -102,6 +102,51 @@ TEST(OneAtATime, ADeletionWhoseFolderCannotBeMovedIsNotDone) {
   expect_whole_or_gone(service, id);
 }
 
+/// Counts how often it moved something.
+class CountedMoves : public FileSystem {
+ public:
+  int rename(const fs::path& from, const fs::path& to) override {
+    ++moves;
+    return FileSystem::rename(from, to);
+  }
+  int moves = 0;
+};
+
+TEST(OneAtATime, ADeletionThatCameTooLateNeverMovesTheFolderOfTheResumedJob) {
+  Service service;
+  const std::string id = service.submit_in(JobState::completed);
+  ASSERT_EQ(service.post("/v1/jobs/" + id + "/resume", R"({"end_time": 0.2})").status, 200);
+  CountedMoves system;
+  try {
+    delete_job(service.store, service.data.path(), id, system);
+    FAIL() << "a queued job was deleted";
+  } catch (const JobStoreError& refusal) {
+    EXPECT_EQ(refusal.fault(), JobStoreError::Fault::conflict);
+  }
+  EXPECT_EQ(system.moves, 0);
+  expect_whole_or_gone(service, id);
+}
+
+TEST(OneAtATime, AJobThatWasResumedHasItsFolderAtEveryMoment) {
+  Service service;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::string id = service.submit_in(JobState::completed);
+    std::atomic<bool> done = false;
+    std::thread deletions([&] {
+      while (!done) (void)service.ask("DELETE", "/v1/jobs/" + id);
+    });
+    const int resumed = service.post("/v1/jobs/" + id + "/resume", R"({"end_time": 0.2})").status;
+    for (int look = 0; resumed == 200 && look < 50; ++look) {
+      EXPECT_TRUE(fs::exists(service.data.job(id) / "scene.json"));
+    }
+    done = true;
+    deletions.join();
+    if (resumed != 200) continue;
+    EXPECT_EQ(service.post("/v1/jobs/" + id + "/cancel").status, 200);
+    EXPECT_EQ(service.ask("DELETE", "/v1/jobs/" + id).status, 204);
+  }
+}
+
 TEST(Readiness, EndsWithTheReasonWhenTheDataFolderIsGone) {
   Service service;
   EXPECT_EQ(service.get("/readyz").status, 200);

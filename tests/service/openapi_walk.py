@@ -17,7 +17,7 @@ from live import Answer, Server, scene
 
 METHODS = ("get", "post", "delete")
 # What no request can bring about in a healthy server: unit tests provoke these.
-NOT_HERE = {"internal", "overloaded", "not-ready", "disk-full"}
+NOT_HERE = {"internal", "damaged-files", "overloaded", "not-ready", "disk-full"}
 # What the connection answers before a route is looked for: the same on every path.
 TRANSPORT = {"bad-request", "request-timeout", "body-too-large", "uri-too-long",
              "unsupported-media-type", "headers-too-large", "not-implemented"}

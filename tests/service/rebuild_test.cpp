@@ -239,6 +239,16 @@ TEST(SetAside, FindsNothingInANewFolderAndIsRefusedWhileAServiceRuns) {
   expect_refusal(JobStoreError::Fault::in_use, [&] { (void)set_aside_database(data.path()); });
 }
 
+TEST(SetAside, TakesALinkForWhatItIsAlsoOneThatLeadsToItself) {
+  const DataFolder data;
+  const fs::path file = data.path() / "jobs.sqlite";
+  fs::create_symlink(file.filename(), file);
+  const auto aside = set_aside_database(data.path());
+  ASSERT_TRUE(aside);
+  EXPECT_TRUE(fs::is_symlink(*aside));
+  EXPECT_TRUE(JobStore(data.path()).list({}).empty());
+}
+
 TEST(JobFile, ReadsBackAsItWasWritten) {
   const DataFolder data;
   const JobFile file{"\"käse\"\n", 7, 3, 123, "key", "hash", JobState::cancelled};

@@ -248,6 +248,22 @@ TEST_F(SchedulerThread, FailsAJobWhoseFolderIsGone) {
   EXPECT_NE(wait_for(store_, job.id, JobState::failed).reason.find("gone"), std::string::npos);
 }
 
+TEST_F(SchedulerThread, AFolderThatCannotBeLookedAtIsAnErrorOfItsJobAlone) {
+  const Job job = add_real_job(store_, data_, 0.1, 1);  // the first of the queue
+  const Job other = add_real_job(store_, data_);
+  const auto scene = data_.job(job.id) / "scene.json";
+  std::filesystem::remove(scene);
+  std::filesystem::create_symlink(scene.filename(), scene);
+  start(kComplete);
+  wait_for(store_, other.id, JobState::completed);
+  wait_for_event(store_, job.id, "requeued");
+  const Job waiting = *store_.find(job.id);
+  EXPECT_EQ(waiting.state, JobState::queued);
+  EXPECT_EQ(waiting.crashes, 0);
+  EXPECT_NE(waiting.reason.find("scene.json"), std::string::npos) << waiting.reason;
+  EXPECT_EQ(waiting.reason.find(data_.path().string()), std::string::npos) << waiting.reason;
+}
+
 TEST_F(SchedulerThread, WaitsWhenNoWorkerCanBeStarted) {
   const Job job = add_real_job(store_, data_);
   scheduler_.emplace(store_, data_.path(), limits_, data_.path() / "missing");

@@ -275,6 +275,32 @@ TEST(JobStore, MovesTheEndTimeOnlyLaterAndOnlyByAResume) {
   EXPECT_EQ(store.find(paused.id)->end_time, 2.0 * end);
 }
 
+TEST(JobStore, TellsThatAComputationThatFailedWouldFailAgain) {
+  const DataFolder data;
+  JobStore store(data.path());
+  const auto advice_after = [&](int exit_code) {
+    const Job running = add_job_in(store, JobState::running);
+    JobChange change;
+    change.outcome = fmt::format(R"({{"state": "failed", "exit_code": {}}})", exit_code);
+    (void)store.apply(running.id, JobAction::fail, running.token, change);
+    std::string all;
+    for (const JobAction action : {JobAction::resume, JobAction::cancel}) {
+      try {
+        (void)store.apply(running.id, action, "", {});
+        ADD_FAILURE() << to_string(action);
+      } catch (const JobStoreError& error) {
+        all += error.what();
+      }
+    }
+    return all;
+  };
+  const std::string of_physics = advice_after(4);
+  EXPECT_NE(of_physics.find("fail again at the same step"), std::string::npos) << of_physics;
+  EXPECT_NE(of_physics.find("submit a changed scene"), std::string::npos) << of_physics;
+  EXPECT_EQ(of_physics.find("give a later end time"), std::string::npos) << of_physics;
+  EXPECT_NE(advice_after(6).find("give a later end time"), std::string::npos);
+}
+
 TEST(JobStore, ObeysAPauseThatCameWhileTheAttemptWasLost) {
   const DataFolder data;
   JobStore store(data.path());

@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <new>
 #include <numeric>
+#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "tests/sph/few_threads.hpp"
 
 namespace sluice {
 namespace {
@@ -163,6 +166,12 @@ TEST(ThreadTeam, TwoTeamsWorkSideBySide) {
   // 200 sum_{k<500} k^2 = 200 * 499 * 500 * 999/6
   EXPECT_EQ(own, 200L * 499 * 500 * 999 / 6);
   EXPECT_EQ(other, own);
+}
+
+TEST(ThreadTeam, SaysSoWhenTheSystemRefusesAThreadAndEndsThoseThatRun) {
+  if (!test::kThreadsCanBeRefused) GTEST_SKIP() << "sanitizers need the addresses themselves";
+  const test::FewThreads few;
+  EXPECT_THROW(ThreadTeam(200), std::system_error);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "engine/store/apart.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <random>
 #include <string>
@@ -32,6 +34,15 @@ TEST(Apart, GivesWhatTheWorkReturns) {
   const std::string large(3'000'000, 'x');
   EXPECT_EQ(work_apart({}, [&] { return large; }), large);
   EXPECT_EQ(work_apart({}, [] { return std::string(); }), "");
+}
+
+TEST(Apart, GivesWayToOthersWhereThatIsAskedFor) {
+  const auto niceness = [] { return std::to_string(::getpriority(PRIO_PROCESS, 0)); };
+  const std::string own = niceness();
+  EXPECT_EQ(work_apart({}, niceness), own);
+  ApartLimits limits;
+  limits.nice = 3;
+  EXPECT_EQ(work_apart(limits, niceness), std::to_string(std::min(19, std::stoi(own) + 3)));
 }
 
 TEST(Apart, ThrowsHereWhatTheWorkThrowsThere) {

@@ -65,7 +65,7 @@ TEST(ALook, ListsWhatAFolderHoldsAndNothingWhereThereIsNone) {
   fs::create_directory(folder / "two");
   EXPECT_EQ(entries_of(folder.path()).size(), 2U);
   EXPECT_TRUE(entries_of(folder / "none").empty());
-  expect_fault(StorageFault::io, [&] { (void)entries_of(folder / "one"); });
+  expect_fault(StorageFault::corrupt, [&] { (void)entries_of(folder / "one"); });
 }
 
 }  // namespace
