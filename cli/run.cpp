@@ -112,8 +112,9 @@ void remove_report(const JobPaths& paths) {
 }
 
 void run(const RunArguments& arguments) {
-  // Until the process ends: a wish that comes twice must not end it before it has said how it went.
-  static const SignalRequests signals;
+  // Until the process has ended, and so never destroyed: a wish that comes twice must not end it
+  // before it has said how it went.
+  static const SignalRequests& signals = *new SignalRequests;
   OpenedJob job = find_job(arguments);
   job.folder.enter();
   const std::string earlier = completed_outcome(job.folder, job.scene);

@@ -96,8 +96,9 @@ void write_if_asked(const fs::path& path, const std::string& text) {
 void run_suite(const StabilityArguments& arguments) {
   const std::vector<StabilityCase> cases = chosen(arguments.cases);
   const nlohmann::ordered_json scheme = chosen_scheme(arguments.scheme);
-  // Until the process ends: a wish that comes twice must not end it before its verdicts are told.
-  static const SignalRequests signals;
+  // Until the process has ended, and so never destroyed: a wish that comes twice must not end it
+  // before its verdicts are told.
+  [[maybe_unused]] static const SignalRequests& signals = *new SignalRequests;
   const SuiteFolder folder(arguments.folder);
   StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full, scheme);
   std::vector<JudgedCase> judged;
@@ -125,8 +126,9 @@ void run_map(const StabilityArguments& arguments) {
 }
 
 void run_order(const StabilityArguments& arguments) {
-  // Until the process ends: a wish that comes twice must not end it before its verdicts are told.
-  static const SignalRequests signals;
+  // Until the process has ended, and so never destroyed: a wish that comes twice must not end it
+  // before its verdicts are told.
+  [[maybe_unused]] static const SignalRequests& signals = *new SignalRequests;
   const SuiteFolder folder(arguments.folder);
   StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full,
                        chosen_scheme(arguments.scheme));

@@ -21,7 +21,7 @@ namespace sluice {
 class AnswerMaker {
  public:
   struct Limits {
-    int threads = 32;                   ///< requests that make or wait
+    int threads = 80;                   ///< requests that make or wait
     std::int64_t memory = 256LL << 20;  ///< of all children together, as `memory_for` says
     double patience = 3.0;              ///< s that a request waits for its share
     int children = default_children();  ///< at work at once

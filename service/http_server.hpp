@@ -16,7 +16,7 @@ namespace sluice {
 struct HttpOptions {
   std::string host = "127.0.0.1";
   int port = 8080;  ///< 0: any free one
-  int threads = 112;
+  int threads = 160;
   int connections = 512;                 ///< beyond it the one that has waited longest is closed
   int large_answers = 24;                ///< that are sent at once: files and long bodies
   std::int64_t unsent_bytes = 32 << 20;  ///< of other answers that clients have yet to take

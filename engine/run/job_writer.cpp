@@ -135,8 +135,11 @@ void JobWriter::write_outcome(const Outcome& outcome) {
   insist(
       patience,
       [&] { folder_->publish_text(folder_->paths().outcome(), to_json(outcome).dump(2) + "\n"); },
-      [&](const StorageError& error, double wait) { warn("outcome.json", error, wait); }, hurried_);
+      [&](const StorageError& error, double wait) { warn("outcome.json", error, wait); },
+      [&] { return is_hurried(); });
 }
+
+bool JobWriter::is_hurried() const { return hurried_ && checkpoint_step_ && hurried_(); }
 
 std::optional<std::filesystem::path> JobWriter::whole_checkpoint() const {
   if (!checkpoint_step_) return {};
@@ -164,7 +167,8 @@ void JobWriter::account(Account& account) const {
 void JobWriter::persist(std::string_view what, const std::function<void()>& write) {
   insist(
       options_.storage_patience, write,
-      [&](const StorageError& error, double wait) { warn(what, error, wait); }, hurried_);
+      [&](const StorageError& error, double wait) { warn(what, error, wait); },
+      [&] { return is_hurried(); });
 }
 
 void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {

@@ -21,7 +21,8 @@ namespace sluice {
 /// then the StorageError is thrown on.
 class JobWriter {
  public:
-  /// Where it waits for the disk it hurries as soon as `hurried` says so (insist.hpp).
+  /// Where it waits for the disk it hurries as soon as `hurried` says so (insist.hpp) and there is
+  /// a checkpoint to go on from.
   JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter,
             std::function<bool()> hurried);
 
@@ -60,6 +61,7 @@ class JobWriter {
   void persist(std::string_view what, const std::function<void()>& write);
   void warn(std::string_view what, const StorageError& error, double wait);
   [[nodiscard]] bool checkpoint_due(const Simulation& simulation) const;
+  [[nodiscard]] bool is_hurried() const;
 
   JobFolder* folder_;
   RunOptions options_;

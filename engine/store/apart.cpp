@@ -72,6 +72,8 @@ void part_from_parent(pid_t parent, int output, const ApartLimits& limits,
   for (int number = 1; number < SIGRTMIN; ++number) {
     static_cast<void>(::sigaction(number, &action, nullptr));
   }
+  // What a terminal or a session tells its whole group is the parent's to obey.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_IGN);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -94,6 +96,20 @@ void write_all(int descriptor, std::string_view bytes) {
   }
 }
 
+/// What is left of a child.
+struct Remains {
+  int status = 0;
+  double core_seconds = 0.0;
+
+  [[nodiscard]] bool was_killed() const {
+    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  }
+};
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 /// Kills and buries it, unless it was buried.
 class ForkedChild {
  public:
@@ -106,12 +122,14 @@ class ForkedChild {
     (void)bury();
   }
   void kill() const { ::kill(pid_, SIGKILL); }
-  int bury() {
-    int status = 0;
-    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  Remains bury() {
+    Remains remains;
+    rusage used{};
+    while (::wait4(pid_, &remains.status, 0, &used) < 0 && errno == EINTR) {
     }
     pid_ = 0;
-    return status;
+    remains.core_seconds = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
+    return remains;
   }
 
  private:
@@ -136,10 +154,15 @@ std::string gather(int input, const ApartLimits& limits, std::string& output) {
   }
 }
 
-std::string death_of(int status, const ApartLimits& limits) {
-  if (!WIFSIGNALED(status)) return {};
-  const int number = WTERMSIG(status);
-  if (number == SIGXCPU || number == SIGKILL) {
+/// The kernel kills what has used up its time of a core, and counts whole seconds of it.
+bool is_out_of_time(const Remains& remains, const ApartLimits& limits) {
+  return remains.was_killed() && remains.core_seconds > std::ceil(limits.core_seconds) - 0.5;
+}
+
+std::string death_of(const Remains& remains, const ApartLimits& limits) {
+  if (!WIFSIGNALED(remains.status)) return {};
+  const int number = WTERMSIG(remains.status);
+  if (number == SIGXCPU || is_out_of_time(remains, limits)) {
     return fmt::format("it was not done after {} s of a core", std::ceil(limits.core_seconds));
   }
   return fmt::format("signal {} ({})", number, ::strsignal(number));
@@ -186,9 +209,12 @@ ApartEnd end_of_child(const ApartLimits& limits, int errors, const InChild& in_c
   ApartEnd end;
   end.death = gather(pipe.input.get(), limits, end.output);
   if (!end.death.empty()) child.kill();
-  const int status = child.bury();
-  if (end.death.empty()) end.death = death_of(status, limits);
-  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  const Remains remains = child.bury();
+  if (end.death.empty()) {
+    end.death = death_of(remains, limits);
+    end.killed_by_others = remains.was_killed() && !is_out_of_time(remains, limits);
+  }
+  if (WIFEXITED(remains.status)) end.exit_code = WEXITSTATUS(remains.status);
   return end;
 }
 
@@ -222,8 +248,12 @@ ApartLimits ApartLimits::for_bytes(std::uint64_t bytes) {
 std::string work_apart(const ApartLimits& limits, const std::function<std::string()>& work) {
   // What the C library says of a broken heap is no news for the user.
   const FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));
-  ApartEnd end =
-      end_of_child(limits, nowhere.get(), [&](int output) { write_all(output, answer_of(work)); });
+  const auto try_it = [&] {
+    return end_of_child(limits, nowhere.get(),
+                        [&](int output) { write_all(output, answer_of(work)); });
+  };
+  ApartEnd end = try_it();
+  if (end.killed_by_others) end = try_it();
   if (end.exit_code == kOutOfMemory) end.death = "it needs more memory than it may have";
   if (!end.death.empty()) throw ApartFailure(end.death);
   const char kind = end.output.empty() ? '\0' : end.output.front();

@@ -28,6 +28,8 @@ struct ApartEnd {
   std::string
       death;  ///< what stopped it, such as "signal 11 (Segmentation fault)"; empty: it ended
   int exit_code = 0;
+  /// SIGKILL of somebody else's, the kernel's for want of memory too: says nothing of the work.
+  bool killed_by_others = false;
 };
 
 /// The work was stopped by a signal or by its limits.
@@ -39,7 +41,8 @@ class ApartFailure : public std::runtime_error {
 /// Does `work` in a forked child and gives what it returned. Nothing that it does to memory
 /// reaches this process; it has no open files but stdin and stdout, can write none, and
 /// dies with the thread that asked. A StorageError that it throws is thrown here. Throws
-/// ApartFailure when it died or had to be stopped, and std::runtime_error for any other exception.
+/// ApartFailure when it died or had to be stopped, killed by others twice, and std::runtime_error
+/// for any other exception.
 ///
 /// The child of a process with threads has only the calling one: `work` must take no lock that
 /// another thread may hold. That is why a process with threads that reads HDF5 this way reads it in

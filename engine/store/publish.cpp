@@ -199,6 +199,10 @@ void write_text(const fs::path& target, std::string_view text, FileSystem& syste
   if (unknown || type == fs::file_type::not_found || type == fs::file_type::regular) {
     return publish_text(target, text, system);
   }
+  if (fs::is_directory(target, unknown)) {
+    throw StorageError(StorageFault::io,
+                       fmt::format("{}: is a folder; name a file to write", target.string()));
+  }
   FileDescriptor file(uninterrupted(
       [&] { return ::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); }));
   if (file.get() < 0) throw system_error("cannot open for writing", target, errno);

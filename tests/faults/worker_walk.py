@@ -131,10 +131,9 @@ class WorkerWalk:
         _, command, expected, _ = OPERATIONS[case.operation]
         status = ended.returncode
         if case.fault == faults.KILL:
-            # The one that was killed may be the child that reads files on its own.
-            in_child = status == STORAGE_FAILURE and "did not survive" in ended.stderr
-            if not faults.was_killed(status) and not in_child:
-                yield f"ended with {status}, but was killed"
+            # The one that was killed may be a child that reads files, which is tried once more.
+            if not faults.was_killed(status) and status != expected:
+                yield f"ended with {status}, but was killed: {ended.stderr.strip()}"
         elif status == UNREADABLE_SCENE and (folder / what.split()[-1]).parent == folder:
             pass  # the scene that it was given: nothing has begun
         elif status not in (expected, STORAGE_FAILURE):

@@ -88,6 +88,32 @@ TEST(Apart, OutlivesWorkThatDiesSpinsGrowsOrSaysNothing) {
             std::string::npos);
 }
 
+TEST(Apart, TriesOnceMoreWhenOthersKilledIt) {
+  const TemporaryFolder folder;
+  const auto kill_the_first = [&] {
+    if (::rmdir((folder / "first").c_str()) == 0) ::raise(SIGKILL);
+    return std::string("done");
+  };
+  fs::create_directory(folder / "first");
+  EXPECT_EQ(work_apart({}, kill_the_first), "done");
+  EXPECT_NE(death_of([]() -> std::string {
+              ::raise(SIGKILL);
+              return {};
+            }).find("signal 9"),
+            std::string::npos);
+}
+
+TEST(Apart, LeavesWishesToStopToItsParent) {
+  for (const int wish : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EQ(work_apart({},
+                         [&] {
+                           ::raise(wish);
+                           return std::string("done");
+                         }),
+              "done");
+  }
+}
+
 TEST(Apart, LetsTheWorkWriteNoFileAndKeepsItFromTheFilesThatAreOpenHere) {
   const TemporaryFolder folder;
   const int open_here = ::dup(STDOUT_FILENO);
