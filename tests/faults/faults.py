@@ -41,8 +41,8 @@ class Control:
 
     burst = 1  # so many calls in a row fail
 
-    def __init__(self, library, path, quick=True):
-        self.library = library
+    def __init__(self, interposer, path, quick=True):
+        self.interposer = interposer
         self.path = os.fspath(path)
         with open(self.path, "wb") as stream:
             stream.truncate(HEAD.size + MOST_CALLS)
@@ -52,7 +52,7 @@ class Control:
         self.disarm()
 
     def environment(self):
-        return {**os.environ, "LD_PRELOAD": self.library, "SLUICE_FAULTS": self.path}
+        return {**os.environ, "LD_PRELOAD": self.interposer, "SLUICE_FAULTS": self.path}
 
     def arm(self, at=0, fault=0):
         """From now on calls are counted; the `at`-th fails. With 0 none does."""

@@ -34,12 +34,12 @@ class Dead(Exception):
 class Place:
     """A service with a data folder and faults of its own."""
 
-    def __init__(self, program, library, folder):
+    def __init__(self, program, interposer, folder):
         self.program = program
         self.folder = folder
         folder.mkdir(parents=True)
         self.data = folder / "data"
-        self.control = faults.Control(library, folder / "control")
+        self.control = faults.Control(interposer, folder / "control")
         self.log = open(folder / "log", "ab")
         with socket.socket() as probe:
             probe.bind((HOST, 0))
@@ -408,9 +408,9 @@ REQUESTS = {
 
 
 class ServiceWalk:
-    def __init__(self, program, library, folder):
+    def __init__(self, program, interposer, folder):
         self.program = program
-        self.library = library
+        self.interposer = interposer
         self.folder = folder
         self.number = itertools.count()
         self.all_places = []
@@ -418,7 +418,7 @@ class ServiceWalk:
         self.operations = list(REQUESTS)
 
     def new_place(self):
-        place = Place(self.program, self.library, self.folder / f"place-{next(self.number)}")
+        place = Place(self.program, self.interposer, self.folder / f"place-{next(self.number)}")
         self.all_places.append(place)
         return place
 

@@ -1,6 +1,6 @@
 """Lets one system call after the other fail, in the life of a run and of the service.
 
-usage: walk.py SLUICE LIBRARY [worker] [service] [--every K] [--seed N] [--operation NAME]
+usage: walk.py SLUICE INTERPOSER [worker] [service] [--every K] [--seed N] [--operation NAME]
 
 Each operation is done once undisturbed, which counts its calls; then once for each of its calls and
 each fault that fits the call (faults.py). Prints the number of calls walked per operation, and every
@@ -56,7 +56,7 @@ def walk(target, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("sluice")
-    parser.add_argument("library")
+    parser.add_argument("interposer")
     parser.add_argument("parts", nargs="*", metavar="worker, service")
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
@@ -74,7 +74,7 @@ def main():
     for part in arguments.parts or parts:
         place = folder / part
         place.mkdir()
-        target = parts[part](arguments.sluice, arguments.library, place)
+        target = parts[part](arguments.sluice, arguments.interposer, place)
         target.side_by_side = SIDE_BY_SIDE
         try:
             findings += walk(target, arguments)

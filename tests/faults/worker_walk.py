@@ -57,9 +57,9 @@ def results_of(job):
 
 
 class WorkerWalk:
-    def __init__(self, program, library, folder):
+    def __init__(self, program, interposer, folder):
         self.program = program
-        self.library = library
+        self.interposer = interposer
         self.folder = folder
         self.operations = list(OPERATIONS)
         self.starts = folder / "starts"
@@ -110,7 +110,7 @@ class WorkerWalk:
     def disturbed(self, operation, folder, at, fault):
         stage, command, _, _ = OPERATIONS[operation]
         shutil.copytree(self.starts / stage, folder)
-        control = faults.Control(self.library, f"{folder}.control")
+        control = faults.Control(self.interposer, f"{folder}.control")
         try:
             control.arm(at, fault)
             ended = self.run(folder, command, control.environment())
