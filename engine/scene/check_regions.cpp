@@ -48,16 +48,12 @@ std::optional<Narrow> slit_to(const Shape& other, const std::vector<OutlinePoint
 void warn_of_gaps(const Scene& scene, Problems& warnings) {
   const double dx = scene.method.spacing;
   for (std::size_t i = 1; i < scene.fluid.size(); ++i) {
-    Box box = bounds(scene.fluid[i].shape);
-    box.min.array() -= dx;
-    box.max.array() += dx;
+    const Box box = grown(bounds(scene.fluid[i].shape), dx);
     const auto points =
         outline(scene.fluid[i].shape, dx / 2, kMostRegionPoints / scene.fluid.size());
     for (std::size_t other = 0; other < i; ++other) {
       const Shape& shape = scene.fluid[other].shape;
-      const Box near = bounds(shape);
-      if ((near.min.array() > box.max.array()).any() || (near.max.array() < box.min.array()).any())
-        continue;
+      if (!overlap(bounds(shape), box)) continue;
       const auto slit = slit_to(shape, points, dx);
       if (!slit) continue;
       warnings.add(

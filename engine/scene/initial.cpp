@@ -23,10 +23,7 @@ class Displacement {
       // A particle half a spacing above a flat face stays, whatever rounding says.
       : gap_((0.5 - 1e-6) * spacing) {
     for (const Shape& shape : obstacles) {
-      Box box = bounds(shape);
-      box.min.array() -= spacing;
-      box.max.array() += spacing;
-      bodies_.push_back({&shape, box});
+      bodies_.push_back({&shape, grown(bounds(shape), spacing)});
     }
   }
 

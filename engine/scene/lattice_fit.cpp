@@ -84,12 +84,7 @@ class FitCheck {
  public:
   FitCheck(const Scene& scene, const Body& body)
       : scene_(scene), body_(body), dx_(scene.method.spacing), solids_(solid_bodies(scene)) {
-    for (const Shape& solid : solids_) {
-      Box box = bounds(solid);
-      box.min.array() -= dx_;
-      box.max.array() += dx_;
-      boxes_.push_back(box);
-    }
+    for (const Shape& solid : solids_) boxes_.push_back(grown(bounds(solid), dx_));
   }
 
   std::optional<std::string> misfit() {
@@ -183,13 +178,9 @@ std::vector<Body> bodies(const Scene& scene) {
   std::vector<std::size_t> owner(count);
   for (std::size_t i = 0; i < count; ++i) {
     owner[i] = i;
-    Box box = bounds(scene.fluid[i].shape);
-    box.min.array() -= 1.001 * scene.method.spacing;
-    box.max.array() += 1.001 * scene.method.spacing;
+    const Box box = grown(bounds(scene.fluid[i].shape), 1.001 * scene.method.spacing);
     for (std::size_t other = 0; other < i; ++other) {
-      const Box near = bounds(scene.fluid[other].shape);
-      const bool apart =
-          (near.min.array() > box.max.array()).any() || (near.max.array() < box.min.array()).any();
+      const bool apart = !overlap(bounds(scene.fluid[other].shape), box);
       if (apart || owner[other] == owner[i]) continue;
       std::replace(owner.begin(), owner.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                    std::max(owner[other], owner[i]), std::min(owner[other], owner[i]));
@@ -220,14 +211,8 @@ std::vector<bool> beside_misfits(const Scene& scene) {
       const CellSet cells(scene.fluid[region].shape, scene.method.spacing, CellFit::exact_spacing);
       for (std::size_t i = 0; i < beside.size(); ++i) {
         if (beside[i]) continue;
-        Box box = bounds(scene.obstacles[i]);
-        box.min.array() -= reach;
-        box.max.array() += reach;
-        const Box fluid = bounds(scene.fluid[region].shape);
-        if ((fluid.min.array() > box.max.array()).any() ||
-            (fluid.max.array() < box.min.array()).any()) {
-          continue;
-        }
+        const Box box = grown(bounds(scene.obstacles[i]), reach);
+        if (!overlap(bounds(scene.fluid[region].shape), box)) continue;
         cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
           if (beside[i] || !box.contains(point)) return;
           beside[i] = std::abs(signed_distance(scene.obstacles[i], point)) < reach;

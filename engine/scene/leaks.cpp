@@ -19,17 +19,10 @@ constexpr double kDeepEnough = 1.01;
 constexpr int kWays = 8;  // across a solid
 constexpr double kStepsPerSpacing = 8;
 
-/// The box without a margin on all sides.
-Box inner(Box box, double margin) {
-  box.min.array() += margin;
-  box.max.array() -= margin;
-  return box;
-}
-
 bool is_deep(const LiftedWall& gate, const Vec& place, double time, double depth) {
   Box standing = gate.place;
   standing.min.y() += gate.speed * time;
-  return inner(standing, depth).contains(place);
+  return grown(standing, -depth).contains(place);
 }
 
 void add_tank(const Tank& tank, double depth, Method& method) {

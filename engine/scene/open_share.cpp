@@ -25,10 +25,7 @@ bool in_wall(const Tank& tank, const Vec& point) {
 std::vector<Shape> obstacles_near(const Scene& scene, const Vec& point, double reach) {
   std::vector<Shape> near;
   for (const Shape& solid : scene.obstacles) {
-    Box box = bounds(solid);
-    box.min.array() -= reach;
-    box.max.array() += reach;
-    if (box.contains(point)) near.push_back(solid);
+    if (grown(bounds(solid), reach).contains(point)) near.push_back(solid);
   }
   return near;
 }

@@ -111,10 +111,7 @@ bool is_nearer(const Shape& shape, const Vec& point, double distance) {
 
 Solids::Solids(const Scene& scene) : tank_(scene.tank), slack_(kTiny * scene.method.spacing) {
   for (const Shape& shape : scene.obstacles) {
-    Box box = bounds(shape);
-    box.min.array() -= slack_;
-    box.max.array() += slack_;
-    bodies_.push_back({&shape, box});
+    bodies_.push_back({&shape, grown(bounds(shape), slack_)});
   }
 }
 
