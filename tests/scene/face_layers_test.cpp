@@ -37,23 +37,13 @@ Polygon turned(const Polygon& polygon, double angle) {
   return result;
 }
 
-double smallest_gap(const std::vector<Vec>& points) {
-  double smallest = INFINITY;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      smallest = std::min(smallest, (points[i] - points[j]).norm());
-    }
-  }
-  return smallest;
-}
-
 TEST(FaceLayers, OfABoxOfWholeSpacingsAreALatticeWhereverItStands) {
   // 20 x 12 cells less the 14 x 6 that are deeper than three layers.
   for (const double angle : {0.0, 0.3}) {
     const Polygon solid = turned(box(0.0037, 0.0042, 0.2, 0.12), angle);
     const std::vector<Vec> points = *face_layers(solid, coarse(), nothing_covered);
     EXPECT_EQ(points.size(), 20U * 12U - 14U * 6U);
-    EXPECT_NEAR(smallest_gap(points), kDx, 1e-9);
+    EXPECT_NEAR(testing::smallest_distance(points), kDx, 1e-9);
     for (const Vec& point : points) {
       const double layer = -signed_distance(solid, point) / kDx - 0.5;
       EXPECT_NEAR(layer, std::round(layer), 1e-9);
@@ -79,7 +69,7 @@ TEST(FaceLayers, LieBehindOpenFacesAlone) {
     left = std::min(left, point.x());
   }
   EXPECT_NEAR(left, kDx / 2, 1e-9);
-  EXPECT_NEAR(smallest_gap(points), kDx, 1e-9);
+  EXPECT_NEAR(testing::smallest_distance(points), kDx, 1e-9);
 }
 
 TEST(FaceLayers, GoStraightIntoTheCornerOfAnL) {
@@ -92,7 +82,7 @@ TEST(FaceLayers, GoStraightIntoTheCornerOfAnL) {
   };
   const auto points = *face_layers(solid, coarse(), covered);
   EXPECT_EQ(points.size(), 2U * 3U * 20U + 9U);
-  EXPECT_NEAR(smallest_gap(points), kDx, 1e-9);
+  EXPECT_NEAR(testing::smallest_distance(points), kDx, 1e-9);
 }
 
 TEST(FaceLayers, HoldTheAreaOfAStripAlongARoundFace) {
@@ -105,7 +95,7 @@ TEST(FaceLayers, HoldTheAreaOfAStripAlongARoundFace) {
   const auto points = *face_layers(round, coarse(), nothing_covered);
   const double strip = std::numbers::pi * (0.01 - 0.0049) / (kDx * kDx);
   EXPECT_NEAR(static_cast<double>(points.size()), strip, 0.01 * strip);
-  EXPECT_GT(smallest_gap(points), 0.74 * kDx);
+  EXPECT_GT(testing::smallest_distance(points), 0.74 * kDx);
 }
 
 TEST(FaceLayers, LieInsideAndApartAtAnyCorners) {
@@ -121,7 +111,7 @@ TEST(FaceLayers, LieInsideAndApartAtAnyCorners) {
       const auto points = face_layers(star, coarse(), [](const Vec& p) { return p.y() < 0; });
       EXPECT_TRUE(points || notch < 0.1) << tips;
       if (!points) continue;
-      EXPECT_GT(smallest_gap(*points), 0.74 * kDx) << tips;
+      EXPECT_GT(testing::smallest_distance(*points), 0.74 * kDx) << tips;
       for (const Vec& point : *points) EXPECT_LT(signed_distance(star, point), 0.0) << tips;
     }
   }

@@ -28,17 +28,6 @@ Scene example(const std::string& name) {
 
 json region(const char* text) { return json::parse(text); }
 
-/// Smallest distance between any two points, O(n^2).
-double smallest_distance(const std::vector<Vec>& points) {
-  double smallest = INFINITY;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      smallest = std::min(smallest, (points[i] - points[j]).norm());
-    }
-  }
-  return smallest;
-}
-
 std::vector<Vec> positions(const Particles& particles) {
   std::vector<Vec> result;
   for (std::size_t i = 0; i < particles.size(); ++i) result.push_back(particles.position(i));
@@ -56,7 +45,7 @@ TEST(InitialParticles, StandBehindAGateOfThreeLayersOfWallParticles) {
   for (std::size_t i = 0; i < made.walls.size(); ++i) {
     EXPECT_EQ(scene.method.lifted_wall->place.contains(made.walls[i]), i >= without);
   }
-  EXPECT_GT(smallest_distance(made.walls), 0.049);
+  EXPECT_GT(testing::smallest_distance(made.walls), 0.049);
 }
 
 TEST(InitialParticles, FillThePapersColumnWith200By100) {
@@ -201,7 +190,7 @@ TEST(InitialParticles, OfRegionsSideBySideAreNoOverlap) {
       {"shape": "rectangle", "corner": [0.27, 0], "size": [0.5, 0.5]}])");
   const auto points = positions(create_particles(parsed(text)).state.particles);
   EXPECT_EQ(points.size(), 54U + 100U) << "each region's area";
-  EXPECT_GE(smallest_distance(points), 0.5 * 0.05);
+  EXPECT_GE(testing::smallest_distance(points), 0.5 * 0.05);
 }
 
 TEST(InitialParticles, OfOverlappingRegionsAreRefusedByName) {
@@ -372,7 +361,7 @@ TEST(StartPlan, PacksWhatTheLatticeDoesNotFitToItsArea) {
     EXPECT_EQ(plan.fluid_particles, made.state.particles.size()) << i;
     ASSERT_TRUE(made.packing) << i;
     EXPECT_LT(made.packing->residual, 1e-3) << i;
-    EXPECT_GT(smallest_distance(positions(made.state.particles)), 0.7 * 0.05) << i;
+    EXPECT_GT(testing::smallest_distance(positions(made.state.particles)), 0.7 * 0.05) << i;
     ++i;
   }
 }

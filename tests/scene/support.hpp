@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -31,6 +32,17 @@ inline std::vector<std::filesystem::path> json_files(const std::filesystem::path
   std::sort(files.begin(), files.end());
   EXPECT_FALSE(files.empty()) << folder;
   return files;
+}
+
+/// Smallest distance between any two points, O(n^2).
+inline double smallest_distance(const std::vector<Vec>& points) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      smallest = std::min(smallest, (points[i] - points[j]).norm());
+    }
+  }
+  return smallest;
 }
 
 /// A tank of 2 m x 1 m with a column of 1 m x 0.5 m at its left wall, dx = 0.05 m: 200 particles.

@@ -18,16 +18,6 @@ Method method(double spacing, double smoothing_ratio = 1.0) {
   return m;
 }
 
-double smallest_distance(const std::vector<Vec>& points) {
-  double smallest = INFINITY;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      smallest = std::min(smallest, (points[i] - points[j]).norm());
-    }
-  }
-  return smallest;
-}
-
 TEST(TankWalls, AreThreeLayersOfThePapersTank) {
   // 1.61/0.003 = 536.7 -> 537 columns, 200 rows: 3 (537 + 6) + 2 x 3 x 200.
   const Tank tank{1.61, 0.6, true};
@@ -49,7 +39,7 @@ TEST(TankWalls, LieOutsideAndNowhereTwice) {
   for (const bool open : {true, false}) {
     const std::vector<Vec> walls = tank_walls({1.03, 0.47, open}, method(0.05));
     // Stretched along a wall by half a cell in nine at the most.
-    EXPECT_GT(smallest_distance(walls), 0.05 * 9 / 10);
+    EXPECT_GT(testing::smallest_distance(walls), 0.05 * 9 / 10);
     for (const Vec& point : walls) {
       const double outside =
           std::max({-point.x(), point.x() - 1.03, -point.y(), open ? -1.0 : point.y() - 0.47});
@@ -138,7 +128,7 @@ TEST(ObstacleWalls, OfOverlappingObstaclesStandOnce) {
                                   Rectangle{Vec(0.1, 0.1), Vec(0.2, 0.2)}};
   const auto walls = obstacle_walls(two, method(0.05));
   EXPECT_EQ(walls.size(), 16U + 12U);
-  EXPECT_GT(smallest_distance(walls), 0.049);
+  EXPECT_GT(testing::smallest_distance(walls), 0.049);
 }
 
 TEST(Rim, IsTheMiddleOfTheWallsHoweverThickTheyAre) {
