@@ -10,8 +10,8 @@
 
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
-#include "engine/scene/canonical.hpp"
-#include "engine/scene/parse.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/format/canonical.hpp"
 
 namespace sluice {
 namespace {

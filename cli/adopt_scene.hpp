@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/scene/scene.hpp"
-#include "engine/store/job_folder.hpp"
+#include "engine/scene/model/scene.hpp"
+#include "engine/store/files/job_folder.hpp"
 
 namespace sluice {
 

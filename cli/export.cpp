@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "cli/checks.hpp"
-#include "cli/job_data.hpp"
+#include "cli/client/job_data.hpp"
 #include "cli/verbs.hpp"
-#include "engine/store/apart.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/frame_io.hpp"
-#include "engine/store/publish.hpp"
-#include "engine/store/vtk_file.hpp"
+#include "engine/export/vtk_file.hpp"
+#include "engine/store/disk/apart.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/publish.hpp"
+#include "engine/store/files/frame_io.hpp"
 
 namespace sluice {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/store/inspect.hpp"
+#include "engine/store/files/inspect.hpp"
 
 #include <fmt/format.h>
 
@@ -15,11 +15,11 @@
 #include "cli/checks.hpp"
 #include "cli/json_text.hpp"
 #include "cli/verbs.hpp"
-#include "engine/scene/estimate.hpp"
-#include "engine/scene/parse.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/file_system.hpp"
-#include "engine/store/trailer.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/forecast/estimate.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/file_system.hpp"
+#include "engine/store/disk/trailer.hpp"
 
 namespace sluice {
 namespace {

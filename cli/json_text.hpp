@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/ladder/markup.hpp"
+#include "engine/draw/markup.hpp"
 
 namespace sluice {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cli/checks.hpp"
-#include "engine/scene/estimate.hpp"
-#include "engine/sph/simd_target.hpp"
+#include "engine/scene/forecast/estimate.hpp"
+#include "engine/sph/loops/simd_target.hpp"
 
 namespace sluice {
 namespace {

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "engine/scene/scene.hpp"
+#include "engine/scene/model/scene.hpp"
 
 namespace sluice {
 

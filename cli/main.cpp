@@ -20,10 +20,10 @@
 #include "cli/verbs.hpp"
 #include "engine/run/build_id.hpp"
 #include "engine/run/run_loop.hpp"
-#include "engine/scene/parse.hpp"
-#include "engine/scene/problems.hpp"
-#include "engine/sph/simd_target.hpp"
-#include "engine/store/errors.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/model/problems.hpp"
+#include "engine/sph/loops/simd_target.hpp"
+#include "engine/store/disk/errors.hpp"
 
 namespace sluice {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "cli/http_client.hpp"
+#include "cli/client/http_client.hpp"
 
 namespace sluice {
 

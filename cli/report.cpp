@@ -1,4 +1,4 @@
-#include "engine/study/report.hpp"
+#include "engine/report/report.hpp"
 
 #include <fmt/format.h>
 
@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "cli/checks.hpp"
-#include "cli/fetched_job.hpp"
-#include "cli/job_data.hpp"
-#include "cli/job_names.hpp"
-#include "cli/service_client.hpp"
+#include "cli/client/fetched_job.hpp"
+#include "cli/client/job_data.hpp"
+#include "cli/client/job_names.hpp"
+#include "cli/client/service_client.hpp"
 #include "cli/verbs.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/publish.hpp"
-#include "engine/study/animation.hpp"
-#include "engine/study/snapshots.hpp"
+#include "engine/report/animation.hpp"
+#include "engine/report/snapshots.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/publish.hpp"
 
 namespace sluice {
 namespace {

@@ -16,7 +16,7 @@
 #include "engine/run/reporter.hpp"
 #include "engine/run/run_loop.hpp"
 #include "engine/run/signals.hpp"
-#include "engine/store/job_folder.hpp"
+#include "engine/store/files/job_folder.hpp"
 
 namespace sluice {
 namespace {

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/shell_word.hpp"
+#include "engine/report/report.hpp"
 #include "engine/run/insist.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/file_system.hpp"
-#include "engine/study/report.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/file_system.hpp"
 
 namespace sluice {
 namespace {

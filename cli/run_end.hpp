@@ -4,8 +4,8 @@
 #include <string>
 
 #include "engine/run/outcome.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/store/job_folder.hpp"
+#include "engine/scene/model/scene.hpp"
+#include "engine/store/files/job_folder.hpp"
 
 namespace sluice {
 

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "engine/run/stop_wish.hpp"
-#include "engine/store/file_system.hpp"
+#include "engine/store/disk/file_system.hpp"
 
 namespace sluice {
 namespace {

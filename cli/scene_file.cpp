@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "cli/verbs.hpp"
-#include "engine/scene/parse.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/file_system.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/file_system.hpp"
 
 namespace sluice {
 namespace {

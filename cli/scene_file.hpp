@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scene/parse.hpp"
-#include "engine/scene/scene.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/model/scene.hpp"
 
 namespace sluice {
 

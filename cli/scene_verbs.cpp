@@ -5,17 +5,17 @@
 #include <optional>
 
 #include "cli/checks.hpp"
-#include "cli/job_text.hpp"
+#include "cli/client/job_text.hpp"
 #include "cli/machine.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
-#include "engine/scene/estimate.hpp"
-#include "engine/scene/initial.hpp"
-#include "engine/scene/parse.hpp"
-#include "engine/scene/plan.hpp"
-#include "engine/scene/stability.hpp"
-#include "engine/scene/walls.hpp"
-#include "engine/store/file_system.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/filling/initial.hpp"
+#include "engine/scene/filling/walls.hpp"
+#include "engine/scene/forecast/estimate.hpp"
+#include "engine/scene/forecast/plan.hpp"
+#include "engine/scene/forecast/stability.hpp"
+#include "engine/store/disk/file_system.hpp"
 
 namespace sluice {
 namespace {

@@ -10,13 +10,13 @@
 #include <string_view>
 
 #include "cli/checks.hpp"
-#include "cli/job_data.hpp"
+#include "cli/client/job_data.hpp"
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
-#include "engine/ladder/table.hpp"
-#include "engine/store/dimensionless.hpp"
-#include "engine/store/filter.hpp"
-#include "service/series_view.hpp"
+#include "engine/store/read/dimensionless.hpp"
+#include "engine/store/read/filter.hpp"
+#include "engine/study/table.hpp"
+#include "service/api/series_view.hpp"
 
 namespace sluice {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/service_client.hpp"
+#include "cli/client/service_client.hpp"
 
 namespace sluice {
 

@@ -8,18 +8,18 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "cli/notify.hpp"
+#include "cli/client/notify.hpp"
 #include "cli/serve_options.hpp"
 #include "cli/stop_signals.hpp"
 #include "cli/verbs.hpp"
-#include "engine/store/errors.hpp"
-#include "service/admission.hpp"
-#include "service/api.hpp"
-#include "service/descriptor_budget.hpp"
-#include "service/rebuild.hpp"
-#include "service/repair.hpp"
-#include "service/service_log.hpp"
-#include "service/time_slice.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "service/api/api.hpp"
+#include "service/jobs/descriptor_budget.hpp"
+#include "service/jobs/limits.hpp"
+#include "service/jobs/rebuild.hpp"
+#include "service/jobs/repair.hpp"
+#include "service/jobs/service_log.hpp"
+#include "service/worker/time_slice.hpp"
 
 namespace sluice {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "service/http_server.hpp"
-#include "service/scheduler.hpp"
+#include "service/http/http_server.hpp"
+#include "service/scheduler/scheduler.hpp"
 
 namespace sluice {
 

@@ -12,14 +12,14 @@
 #include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/signals.hpp"
-#include "engine/scene/canonical.hpp"
-#include "engine/scene/problems.hpp"
-#include "engine/store/publish.hpp"
-#include "engine/study/elliptical_drop.hpp"
-#include "engine/study/stability_case.hpp"
-#include "engine/study/stability_map.hpp"
-#include "engine/study/stability_report.hpp"
-#include "engine/study/stability_scenes.hpp"
+#include "engine/scene/format/canonical.hpp"
+#include "engine/scene/model/problems.hpp"
+#include "engine/store/disk/publish.hpp"
+#include "engine/verify/elliptical_drop.hpp"
+#include "engine/verify/stability_case.hpp"
+#include "engine/verify/stability_map.hpp"
+#include "engine/verify/stability_report.hpp"
+#include "engine/verify/stability_scenes.hpp"
 
 namespace sluice {
 namespace {

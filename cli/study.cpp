@@ -11,15 +11,15 @@
 
 #include "cli/adopt_scene.hpp"
 #include "cli/checks.hpp"
+#include "cli/client/service_study.hpp"
 #include "cli/run_pool.hpp"
-#include "cli/service_study.hpp"
 #include "cli/verbs.hpp"
-#include "engine/ladder/study_output.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/job_folder.hpp"
-#include "engine/store/publish.hpp"
-#include "engine/study/study_row.hpp"
-#include "service/job_ids.hpp"
+#include "engine/report/study_row.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/publish.hpp"
+#include "engine/store/files/job_folder.hpp"
+#include "engine/study/study_output.hpp"
+#include "service/jobs/job_ids.hpp"
 
 namespace sluice {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scene/problems.hpp"
+#include "engine/scene/model/problems.hpp"
 
 namespace sluice {
 namespace {

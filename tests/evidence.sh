@@ -64,5 +64,5 @@ done
 errors=()
 for seed in 1 2 3; do errors+=("$(displaced dambreak "$seed" 1.399)"); done
 
-python3 tests/study/check_evidence.py "$work/dambreak-paper.report.json" "$work/dambreak.report.json" \
+python3 tests/report/check_evidence.py "$work/dambreak-paper.report.json" "$work/dambreak.report.json" \
   --peaks "${peaks[@]}" --errors "${errors[@]}"

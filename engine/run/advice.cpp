@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/scene/scheme_analysis.hpp"
-#include "engine/scene/stability.hpp"
+#include "engine/scene/forecast/scheme_analysis.hpp"
+#include "engine/scene/forecast/stability.hpp"
 
 namespace sluice {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/sph/method.hpp"
+#include "engine/sph/method/method.hpp"
 
 namespace sluice {
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "engine/run/advice.hpp"
-#include "engine/sph/crowding.hpp"
-#include "engine/sph/retired.hpp"
+#include "engine/sph/method/retired.hpp"
+#include "engine/sph/stability/crowding.hpp"
 
 namespace sluice {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "engine/sph/solver.hpp"
-#include "engine/store/checkpoint.hpp"
+#include "engine/sph/solver/solver.hpp"
+#include "engine/store/files/checkpoint.hpp"
 
 namespace sluice {
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "engine/store/errors.hpp"
+#include "engine/store/disk/errors.hpp"
 
 namespace sluice {
 

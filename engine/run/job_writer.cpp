@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "engine/run/insist.hpp"
-#include "engine/store/frame_io.hpp"
-#include "engine/store/series_file.hpp"
-#include "engine/store/trailer.hpp"
+#include "engine/store/disk/trailer.hpp"
+#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/series_file.hpp"
 
 namespace sluice {
 JobWriter::JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter,

@@ -12,7 +12,7 @@
 #include "engine/run/run_loop.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/run/stopwatch.hpp"
-#include "engine/store/job_folder.hpp"
+#include "engine/store/files/job_folder.hpp"
 
 namespace sluice {
 

@@ -7,7 +7,7 @@
 #include "engine/run/build_id.hpp"
 #include "engine/run/machine_name.hpp"
 #include "engine/run/reporter.hpp"
-#include "engine/store/digest.hpp"
+#include "engine/store/files/digest.hpp"
 
 namespace sluice {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/sph/solver.hpp"
+#include "engine/sph/solver/solver.hpp"
 
 namespace sluice {
 

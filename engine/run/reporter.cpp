@@ -12,8 +12,8 @@
 #include <span>
 #include <utility>
 
-#include "engine/store/errors.hpp"
-#include "engine/store/file_system.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/file_system.hpp"
 
 namespace sluice {
 namespace {

@@ -15,8 +15,8 @@
 #include "engine/run/signals.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/run/stopwatch.hpp"
-#include "engine/scene/canonical.hpp"
-#include "engine/store/digest.hpp"
+#include "engine/scene/format/canonical.hpp"
+#include "engine/store/files/digest.hpp"
 
 namespace sluice {
 namespace {

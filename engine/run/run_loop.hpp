@@ -6,9 +6,9 @@
 #include "engine/run/exit_code.hpp"
 #include "engine/run/outcome.hpp"
 #include "engine/run/reporter.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/store/errors.hpp"
-#include "engine/store/job_folder.hpp"
+#include "engine/scene/model/scene.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/files/job_folder.hpp"
 
 namespace sluice {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "engine/run/schedule.hpp"
-#include "engine/scene/open_share.hpp"
+#include "engine/scene/geometry/open_share.hpp"
 
 namespace sluice {
 namespace {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/scene/scene.hpp"
-#include "engine/sph/solver.hpp"
-#include "engine/store/sample_table.hpp"
+#include "engine/scene/model/scene.hpp"
+#include "engine/sph/solver/solver.hpp"
+#include "engine/store/files/sample_table.hpp"
 
 namespace sluice {
 

@@ -11,12 +11,12 @@
 #include "engine/run/build_id.hpp"
 #include "engine/run/schedule.hpp"
 #include "engine/run/stopwatch.hpp"
-#include "engine/scene/canonical.hpp"
-#include "engine/scene/initial.hpp"
-#include "engine/scene/leaks.hpp"
-#include "engine/scene/walls.hpp"
-#include "engine/store/digest.hpp"
-#include "engine/store/errors.hpp"
+#include "engine/scene/filling/initial.hpp"
+#include "engine/scene/filling/walls.hpp"
+#include "engine/scene/format/canonical.hpp"
+#include "engine/scene/geometry/leaks.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/files/digest.hpp"
 
 namespace sluice {
 namespace {

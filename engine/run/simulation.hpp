@@ -8,11 +8,11 @@
 
 #include "engine/run/guards.hpp"
 #include "engine/run/sampling.hpp"
-#include "engine/scene/packing.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/sph/retired.hpp"
-#include "engine/sph/solver.hpp"
-#include "engine/store/checkpoint.hpp"
+#include "engine/scene/filling/packing.hpp"
+#include "engine/scene/model/scene.hpp"
+#include "engine/sph/method/retired.hpp"
+#include "engine/sph/solver/solver.hpp"
+#include "engine/store/files/checkpoint.hpp"
 
 namespace sluice {
 

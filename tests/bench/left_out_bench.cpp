@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "engine/run/simulation.hpp"
-#include "engine/scene/parse.hpp"
+#include "engine/scene/checks/parse.hpp"
 
 namespace sluice {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/store/checkpoint_io.hpp"
-#include "engine/store/hdf5_file.hpp"
-#include "engine/store/inspect.hpp"
+#include "engine/store/files/checkpoint_io.hpp"
+#include "engine/store/files/inspect.hpp"
+#include "engine/store/hdf5/hdf5_file.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/store/fixtures.hpp"
 

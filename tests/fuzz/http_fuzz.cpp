@@ -7,10 +7,10 @@
 #include <string_view>
 #include <variant>
 
-#include "service/http_head.hpp"
-#include "service/http_range.hpp"
-#include "service/problem.hpp"
-#include "service/query.hpp"
+#include "service/http/http_head.hpp"
+#include "service/http/http_range.hpp"
+#include "service/http/problem.hpp"
+#include "service/http/query.hpp"
 #include "tests/fuzz/require.hpp"
 
 // Any bytes as the head of a request, its query and its Range: refused with words, or understood

@@ -5,11 +5,11 @@
 #include <string>
 #include <string_view>
 
-#include "engine/scene/canonical.hpp"
-#include "engine/scene/estimate.hpp"
-#include "engine/scene/initial.hpp"
-#include "engine/scene/parse.hpp"
-#include "engine/scene/plan.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/filling/initial.hpp"
+#include "engine/scene/forecast/estimate.hpp"
+#include "engine/scene/forecast/plan.hpp"
+#include "engine/scene/format/canonical.hpp"
 #include "tests/fuzz/require.hpp"
 
 // Any text as a scene: it is taken or refused with places and messages, and what is taken means the

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/run/simulation.hpp"
-#include "engine/scene/parse.hpp"
+#include "engine/scene/checks/parse.hpp"
 
 namespace sluice {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "engine/run/removal_news.hpp"
 #include "engine/run/simulation.hpp"
-#include "engine/scene/leaks.hpp"
-#include "engine/scene/parse.hpp"
+#include "engine/scene/checks/parse.hpp"
+#include "engine/scene/geometry/leaks.hpp"
 #include "tests/run/scenes.hpp"
 
 namespace sluice {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "engine/run/simulation.hpp"
-#include "engine/store/checkpoint_io.hpp"
-#include "engine/store/digest.hpp"
-#include "engine/store/errors.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/files/checkpoint_io.hpp"
+#include "engine/store/files/digest.hpp"
 #include "tests/run/scenes.hpp"
 
 namespace sluice {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "engine/scene/parse.hpp"
+#include "engine/scene/checks/parse.hpp"
 
 namespace sluice::testing {
 namespace {

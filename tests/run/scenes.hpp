@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/scene/scene.hpp"
+#include "engine/scene/model/scene.hpp"
 
 namespace sluice::testing {
 

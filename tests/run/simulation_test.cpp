@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/store/errors.hpp"
+#include "engine/store/disk/errors.hpp"
 #include "tests/run/scenes.hpp"
 
 namespace sluice {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/parse.hpp"
+#include "engine/scene/checks/parse.hpp"
 
 namespace sluice::testing {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/sph/method.hpp"
+#include "engine/sph/method/method.hpp"
 #include "tests/sph/test_fluids.hpp"
 
 namespace sluice {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/sph/method.hpp"
-#include "engine/sph/particles.hpp"
-#include "engine/sph/solver.hpp"
+#include "engine/sph/method/method.hpp"
+#include "engine/sph/method/particles.hpp"
+#include "engine/sph/solver/solver.hpp"
 
 namespace sluice {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "engine/store/errors.hpp"
+#include "engine/store/disk/errors.hpp"
 
 namespace sluice::test {
 

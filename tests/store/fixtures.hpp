@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/store/checkpoint.hpp"
-#include "engine/store/file_system.hpp"
-#include "engine/store/frame_io.hpp"
+#include "engine/store/disk/file_system.hpp"
+#include "engine/store/files/checkpoint.hpp"
+#include "engine/store/files/frame_io.hpp"
 
 namespace sluice::test {
 

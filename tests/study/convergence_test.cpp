@@ -1,4 +1,4 @@
-#include "engine/ladder/convergence.hpp"
+#include "engine/study/convergence.hpp"
 
 #include <gtest/gtest.h>
 

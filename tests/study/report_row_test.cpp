@@ -1,4 +1,4 @@
-#include "engine/ladder/report_row.hpp"
+#include "engine/study/report_row.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "engine/ladder/study_result.hpp"
+#include "engine/study/study_result.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/ladder/study_output.hpp"
+#include "engine/study/study_output.hpp"
 
 namespace sluice {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/ladder/study.hpp"
+#include "engine/study/study.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/ladder/table.hpp"
+#include "engine/study/table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,190 @@
+#include "engine/draw/picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/scene/geometry/geometry.hpp"
+
+namespace sluice {
+namespace {
+
+struct Colour {
+  double red, green, blue;
+};
+
+/// viridis (matplotlib, CC0) at ninths; straight between.
+constexpr std::array<Colour, 10> kViridis{{{68, 1, 84},
+                                           {72, 40, 120},
+                                           {62, 74, 137},
+                                           {49, 104, 142},
+                                           {38, 130, 142},
+                                           {31, 158, 137},
+                                           {53, 183, 121},
+                                           {109, 205, 89},
+                                           {180, 222, 44},
+                                           {253, 231, 37}}};
+
+Rgb viridis(double share) {
+  const double place = std::clamp(share, 0.0, 1.0) * (kViridis.size() - 1);
+  const auto before = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
+  const double part = place - static_cast<double>(before);
+  const Colour& a = kViridis[before];
+  const Colour& b = kViridis[before + 1];
+  const auto between = [part](double from, double to) {
+    return static_cast<std::uint8_t>(std::lround(from + part * (to - from)));
+  };
+  return {between(a.red, b.red), between(a.green, b.green), between(a.blue, b.blue)};
+}
+
+std::uint8_t index_of(double value, const PictureFrame& how) {
+  const double share = std::clamp((value - how.low) / (how.high - how.low), 0.0, 1.0);
+  return static_cast<std::uint8_t>(kFirstColour +
+                                   std::lround(share * (kLastColour - kFirstColour)));
+}
+
+double pixels_per_metre(const PictureFrame& how) { return how.width / how.view.size().x(); }
+
+/// The middle of a pixel, m.
+Vec place_of(int column, int row, const PictureFrame& how) {
+  const double scale = pixels_per_metre(how);
+  return {how.view.min.x() + (column + 0.5) / scale, how.view.max.y() - (row + 0.5) / scale};
+}
+
+/// A canvas that remembers how near each pixel's particle is.
+class Canvas {
+ public:
+  Canvas(Picture& picture, const PictureFrame& how)
+      : scale_(pixels_per_metre(how)),
+        view_(how.view),
+        radius_(0.75 * how.diameter),
+        picture_(picture),
+        nearest_(picture.pixels.size(), std::numeric_limits<float>::infinity()) {}
+
+  void disc(const Vec& place, std::uint8_t index) {
+    // Small particles still mark the pixel that they lie in.
+    const double reach = std::max(radius_ * scale_, 0.71);
+    const double column = (place.x() - view_.min.x()) * scale_ - 0.5;
+    const double row = (view_.max.y() - place.y()) * scale_ - 0.5;
+    if (!(column > -reach && column < picture_.width + reach)) return;
+    if (!(row > -reach && row < picture_.height + reach)) return;
+    const auto first = [](double at) { return std::max(0, static_cast<int>(std::ceil(at))); };
+    const int last_row = std::min(picture_.height - 1, static_cast<int>(row + reach));
+    const int last_column = std::min(picture_.width - 1, static_cast<int>(column + reach));
+    for (int j = first(row - reach); j <= last_row; ++j) {
+      for (int i = first(column - reach); i <= last_column; ++i) {
+        paint(i, j, std::hypot(i - column, j - row), reach, index);
+      }
+    }
+  }
+
+ private:
+  void paint(int i, int j, double distance, double reach, std::uint8_t index) {
+    const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(picture_.width) +
+                    static_cast<std::size_t>(i);
+    if (distance > reach || static_cast<float>(distance) >= nearest_[at]) return;
+    nearest_[at] = static_cast<float>(distance);
+    picture_.pixels[at] = index;
+  }
+
+  double scale_;  ///< pixels per metre
+  Box view_;
+  double radius_;
+  Picture& picture_;
+  std::vector<float> nearest_;
+};
+
+/// Fills the pixels whose middle `holds`, within the rows and columns of `box`.
+template <class Holds>
+void fill(Picture& picture, const PictureFrame& how, const Box& box, std::uint8_t index,
+          const Holds& holds) {
+  const double scale = pixels_per_metre(how);
+  const auto bounded = [](double at, int size) {
+    return static_cast<int>(std::clamp(std::floor(at), 0.0, static_cast<double>(size)));
+  };
+  const int left = bounded((box.min.x() - how.view.min.x()) * scale, picture.width);
+  const int right = bounded((box.max.x() - how.view.min.x()) * scale + 1.0, picture.width);
+  const int top = bounded((how.view.max.y() - box.max.y()) * scale, picture.height);
+  const int bottom = bounded((how.view.max.y() - box.min.y()) * scale + 1.0, picture.height);
+  for (int row = top; row < bottom; ++row) {
+    for (int column = left; column < right; ++column) {
+      if (!holds(place_of(column, row, how))) continue;
+      picture.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
+                     static_cast<std::size_t>(column)] = index;
+    }
+  }
+}
+
+std::array<Rgb, 256> make_palette() {
+  std::array<Rgb, 256> palette{};
+  palette[kNothing] = {246, 248, 250};
+  for (int i = kFirstColour; i <= kLastColour; ++i) {
+    palette[static_cast<std::size_t>(i)] =
+        viridis((i - kFirstColour) / static_cast<double>(kLastColour - kFirstColour));
+  }
+  palette[kSolid] = {140, 147, 156};
+  palette[kGate] = {207, 74, 36};
+  palette[kInk] = {27, 31, 36};
+  return palette;
+}
+
+}  // namespace
+
+Picture blank_picture(const PictureFrame& how) {
+  Picture picture;
+  picture.width = how.width;
+  picture.height =
+      std::max(1, static_cast<int>(std::lround(pixels_per_metre(how) * how.view.size().y())));
+  picture.pixels.assign(
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), kNothing);
+  return picture;
+}
+
+Picture draw_solids(const Scene& scene, const PictureFrame& how) {
+  Picture picture = blank_picture(how);
+  if (const auto& tank = scene.tank) {
+    fill(picture, how, how.view, kSolid, [&](const Vec& p) {
+      if (p.y() > tank->height) return !tank->open_top;
+      return p.y() < 0.0 || p.x() < 0.0 || p.x() > tank->width;
+    });
+  }
+  for (const Shape& obstacle : scene.obstacles) {
+    fill(picture, how, bounds(obstacle), kSolid,
+         [&](const Vec& p) { return contains(obstacle, p); });
+  }
+  return picture;
+}
+
+void draw_gate(Picture& picture, const Scene& scene, const PictureFrame& how, double time) {
+  if (!scene.gate) return;
+  const double edge = scene.gate->speed * time;
+  if (!(edge < scene.gate->height)) return;
+  const double thickness = std::max(scene.method.support(), 2.0 / pixels_per_metre(how));
+  const Box box{Vec(scene.gate->x, edge), Vec(scene.gate->x + thickness, scene.gate->height)};
+  fill(picture, how, box, kGate, [&](const Vec& p) { return box.contains(p); });
+}
+
+void draw_particles(Picture& picture, const Frame& frame, const PictureFrame& how) {
+  Canvas canvas(picture, how);
+  for (std::size_t i = 0; i < frame.x.size(); ++i) {
+    canvas.disc(frame.position(i), index_of(coloured_value(frame, i, how.quantity), how));
+  }
+}
+
+float coloured_value(const Frame& frame, std::size_t i, Quantity quantity) {
+  return quantity == Quantity::pressure ? frame.pressure[i] : std::hypot(frame.vx[i], frame.vy[i]);
+}
+
+const std::array<Rgb, 256>& picture_palette() {
+  static const std::array<Rgb, 256> palette = make_palette();
+  return palette;
+}
+
+std::string colour_of(double share) {
+  const Rgb colour = viridis(share);
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+}
+
+}  // namespace sluice

@@ -1,0 +1,202 @@
+#include "engine/report/evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/store/read/filter.hpp"
+
+namespace sluice {
+namespace {
+
+double time_unit(const Scene& scene) {
+  return std::sqrt(scene.scales->height / scene.method.gravity.norm());
+}
+
+/// First column over T, scaled; nothing filtered.
+Curve scaled_curve(const Series& series, const Scene& scene, double offset, double scale) {
+  Curve curve;
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    const double value = series.values[n * series.columns.size()];
+    curve.time.push_back(series.time[n] / time_unit(scene));
+    curve.value.push_back(std::isnan(value) ? 0.0 : (value - offset) / scale);
+  }
+  return curve;
+}
+
+const Series* series_of(const std::vector<Series>& all, const Sensor& sensor) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Series& series) { return series.name == sensor.name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// The first sensor of a kind near a place of the experiment, given in its own metres.
+const Sensor* sensor_at(const Scene& scene, const Reference& reference, SensorKind kind, double x,
+                        std::optional<double> y) {
+  const double height = scene.scales->height;
+  for (const Sensor& sensor : scene.sensors) {
+    const Vec place = sensor.position / height;
+    if (sensor.kind == kind && std::abs(place.x() - x / reference.height) <= 0.02 &&
+        (!y || std::abs(place.y() - *y / reference.height) <= 0.01)) {
+      return &sensor;
+    }
+  }
+  return nullptr;
+}
+
+PressureMeasures measure(const Intervals& intervals, std::span<const double> averages) {
+  PressureMeasures measures;
+  measures.impulse = integral(intervals, averages, kComparisonWindow);
+  measures.plateau = mean(intervals, averages, kPlateauWindow);
+  measures.second_rise = second_rise(intervals, averages);
+  return measures;
+}
+
+struct PressurePair {
+  const PressureReference* reference;
+  const Sensor* sensor;
+  Curve curve;
+};
+
+std::vector<PressurePair> pair_pressures(const Scene& scene, const std::vector<Series>& all,
+                                         const Reference& reference, double tau) {
+  std::vector<PressurePair> pairs;
+  for (const PressureReference& one : reference.pressures) {
+    const Sensor* sensor =
+        sensor_at(scene, reference, SensorKind::pressure, reference.tank_width, one.height);
+    const Series* series = sensor != nullptr ? series_of(all, *sensor) : nullptr;
+    if (series != nullptr) pairs.push_back({&one, sensor, pressure_curve(*series, scene, tau)});
+  }
+  return pairs;
+}
+
+PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& reference,
+                       double shift) {
+  const auto error = [&](std::span<const double> averages) {
+    return relative_l2(reference.pressure_times, averages, pair.reference->values,
+                       kComparisonWindow);
+  };
+  PressureEvidence evidence;
+  evidence.relative_l2_not_shifted = error(interval_averages(pair.curve, reference.pressure_times));
+  for (double& time : pair.curve.time) time += shift;
+  const auto averages = interval_averages(pair.curve, reference.pressure_times);
+  evidence.sensor = pair.sensor->name;
+  evidence.height = pair.sensor->position.y();
+  evidence.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
+                                                                  : scene.method.smoothing_length;
+  evidence.air_pressure = pair.sensor->air_pressure;
+  evidence.reference = pair.reference->name;
+  evidence.peak_statistics = pair.reference->peak;
+  evidence.simulation = measure(reference.pressure_times, averages);
+  evidence.simulation.arrival = first_passage(pair.curve, kArrivalLevel, 1.0);
+  evidence.simulation.peak = peak(pair.curve, kImpactWindow);
+  evidence.experiment = measure(reference.pressure_times, pair.reference->values);
+  evidence.experiment.arrival = pair.reference->arrival;
+  evidence.relative_l2 = error(averages);
+  evidence.simulated = std::move(pair.curve);
+  return evidence;
+}
+
+/// Nothing unless all of the experiment's sensors have one.
+std::optional<double> mean_of(const Evidence& evidence,
+                              std::optional<double> PressureEvidence::*error) {
+  if (evidence.pressures.size() != evidence.reference->pressures.size()) return std::nullopt;
+  double sum = 0.0;
+  for (const PressureEvidence& one : evidence.pressures) {
+    if (!(one.*error)) return std::nullopt;
+    sum += *(one.*error);
+  }
+  return sum / static_cast<double>(evidence.pressures.size());
+}
+
+void compare_pressures(Evidence& evidence, const Scene& scene, std::vector<PressurePair> pairs) {
+  if (pairs.empty()) return;
+  const auto arrival = first_passage(pairs.front().curve, kArrivalLevel, 1.0);
+  if (arrival) evidence.shift = pairs.front().reference->arrival - *arrival;
+  for (PressurePair& pair : pairs) {
+    evidence.pressures.push_back(
+        weigh(std::move(pair), scene, *evidence.reference, evidence.shift.value_or(0.0)));
+  }
+  if (evidence.shift) evidence.mean_relative_l2 = mean_of(evidence, &PressureEvidence::relative_l2);
+  evidence.mean_relative_l2_not_shifted =
+      mean_of(evidence, &PressureEvidence::relative_l2_not_shifted);
+}
+
+void compare_levels(Evidence& evidence, const Scene& scene, const std::vector<Series>& all) {
+  const Reference& reference = *evidence.reference;
+  const Window everything{-1.0, reference.level_times.centers().back() + 1.0};
+  for (const LevelReference& one : reference.levels) {
+    const Sensor* sensor =
+        sensor_at(scene, reference, SensorKind::surface_height, one.x, std::nullopt);
+    const Series* series = sensor != nullptr ? series_of(all, *sensor) : nullptr;
+    if (series == nullptr) continue;
+    Curve curve = scaled_curve(*series, scene, 0.0, scene.scales->height);
+    const auto difference =
+        rms_difference(reference.level_times, interval_averages(curve, reference.level_times),
+                       one.values, everything);
+    evidence.levels.push_back({sensor->name, one.name, difference, std::move(curve)});
+  }
+}
+
+/// How much later the simulated front passes the same places, where it is well under way.
+std::optional<double> front_delay(const Curve& simulated, const Curve& measured) {
+  double sum = 0.0;
+  int count = 0;
+  for (double place = 0.5; place <= 3.0; place += 0.5) {
+    const auto ours = first_passage(simulated, place, 0.0);
+    const auto theirs = first_passage(measured, place, 0.0);
+    if (!theirs) continue;
+    if (!ours) return std::nullopt;
+    sum += *ours - *theirs;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+void compare_front(Evidence& evidence, const Scene& scene, const std::vector<Series>& all) {
+  const Curve& measured = evidence.reference->front;
+  for (const Sensor& sensor : scene.sensors) {
+    const Series* series = series_of(all, sensor);
+    if (sensor.kind != SensorKind::surge_front || series == nullptr) continue;
+    Curve curve = scaled_curve(*series, scene, scene.scales->width, scene.scales->height);
+    const Intervals times(measured.time);
+    evidence.front = FrontEvidence{
+        sensor.name,
+        rms_difference(times, interval_averages(curve, times), measured.value, {-1.0, 1e9}),
+        front_delay(curve, measured),
+        {}};
+    evidence.front->simulated = std::move(curve);
+    return;
+  }
+}
+
+}  // namespace
+
+std::optional<double> PressureEvidence::place_in_band() const {
+  if (!simulation.peak) return std::nullopt;
+  return (simulation.peak->value - peak_statistics.low) /
+         (peak_statistics.high - peak_statistics.low);
+}
+
+Curve pressure_curve(const Series& series, const Scene& scene, double tau) {
+  Series filtered = series;
+  if (filtered.size() > 0) filtered.values = gaussian_filter(filtered, tau).value;
+  filtered.columns.resize(1);
+  const double unit =
+      scene.method.reference_density * scene.method.gravity.norm() * scene.scales->height;
+  return scaled_curve(filtered, scene, 0.0, unit);
+}
+
+Evidence compare(const Scene& scene, const std::vector<Series>& series, const Reference& reference,
+                 double tau) {
+  Evidence evidence;
+  evidence.reference = &reference;
+  evidence.tau = tau;
+  evidence.time_unit = time_unit(scene);
+  compare_pressures(evidence, scene, pair_pressures(scene, series, reference, tau));
+  compare_levels(evidence, scene, series);
+  compare_front(evidence, scene, series);
+  return evidence;
+}
+
+}  // namespace sluice

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/draw/picture.hpp"
+#include "engine/draw/png.hpp"
+#include "engine/report/figures.hpp"
+#include "engine/report/snapshots.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr double kWidth = 760.0;
+constexpr double kLeft = 56.0;
+constexpr double kRight = 16.0;
+constexpr double kTop = 46.0;  ///< holds the title and the scale of colours
+constexpr double kBarWidth = 190.0;
+constexpr double kBottom = 48.0;
+
+struct Plot {
+  Box view;
+  double scale;  ///< units of the view box per metre
+
+  [[nodiscard]] double width() const { return scale * view.size().x(); }
+  [[nodiscard]] double height() const { return scale * view.size().y(); }
+  [[nodiscard]] double x(double metres) const { return kLeft + scale * (metres - view.min.x()); }
+  [[nodiscard]] double y(double metres) const {
+    return kTop + height() - scale * (metres - view.min.y());
+  }
+};
+
+Plot plot_of(const Box& view) {
+  constexpr double kTallest = 420.0;
+  const Vec size = view.size();
+  return {view, std::min((kWidth - kLeft - kRight) / size.x(), kTallest / size.y())};
+}
+
+/// What the numbers of an axis are counted from: whole metres where it lies so far from zero that
+/// its numbers would differ in their last digits only.
+double base_of(double low, double high) {
+  return std::max(std::abs(low), std::abs(high)) > 1000.0 * (high - low) ? std::floor(low) : 0.0;
+}
+
+std::string label_of(std::string_view name, double base) {
+  return base == 0.0
+             ? fmt::format("{}, m", name)
+             : fmt::format("{} {} {:.17g} m, m", name, base > 0.0 ? "-" : "+", std::abs(base));
+}
+
+std::string axes(const Plot& plot) {
+  std::string text;
+  const Vec base(base_of(plot.view.min.x(), plot.view.max.x()),
+                 base_of(plot.view.min.y(), plot.view.max.y()));
+  const Axis x{label_of("x", base.x()), plot.view.min.x() - base.x(), plot.view.max.x() - base.x()};
+  const Axis y{label_of("y", base.y()), plot.view.min.y() - base.y(), plot.view.max.y() - base.y()};
+  const double bottom = kTop + plot.height();
+  // As many as there is room for.
+  for (const double place : ticks(x, std::clamp(static_cast<int>(plot.width() / 60.0), 1, 8))) {
+    text += fmt::format(
+        "<path class=\"frame\" d=\"M{0:.1f} {1:.1f}v5\"/><text x=\"{0:.1f}\" y=\"{2:.1f}\" "
+        "text-anchor=\"middle\">{3}</text>\n",
+        plot.x(base.x() + place), bottom, bottom + 19.0, tick_text(place));
+  }
+  for (const double place : ticks(y, std::clamp(static_cast<int>(plot.height() / 40.0), 1, 5))) {
+    text += fmt::format(
+        "<path class=\"frame\" d=\"M{0} {1:.1f}h-5\"/><text x=\"{2}\" y=\"{3:.1f}\" "
+        "text-anchor=\"end\">{4}</text>\n",
+        kLeft, plot.y(base.y() + place), kLeft - 8.0, plot.y(base.y() + place) + 4.5,
+        tick_text(place));
+  }
+  return text + fmt::format(
+                    "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
+                    "<text transform=\"translate(14 {:.1f}) rotate(-90)\" "
+                    "text-anchor=\"middle\">{}</text>\n",
+                    kLeft + 0.5 * plot.width(), bottom + 40.0, x.label, kTop + 0.5 * plot.height(),
+                    y.label);
+}
+
+/// The scale of colours above the picture's right end, in `unit` Pa or m/s.
+std::string colour_bar(const Plot& plot, std::size_t number, double high, double unit,
+                       std::string_view label) {
+  const double x = std::max(kLeft + plot.width(), kLeft + 300.0) - kBarWidth;
+  std::string stops;
+  for (int k = 0; k <= 9; ++k) {
+    stops +=
+        fmt::format("<stop offset=\"{:.4f}\" stop-color=\"{}\"/>", k / 9.0, colour_of(k / 9.0));
+  }
+  std::string text = fmt::format(
+      "<linearGradient id=\"colours-{0}\">{1}</linearGradient>\n"
+      "<rect x=\"{2:.1f}\" y=\"26\" width=\"{3}\" height=\"10\" fill=\"url(#colours-{0})\"/>\n"
+      "<text x=\"{4:.1f}\" y=\"35.5\" text-anchor=\"end\">{5}</text>\n",
+      number, stops, x, kBarWidth, x - 9.0, label);
+  for (const double place : ticks({"", 0.0, high / unit}, 4)) {
+    text += fmt::format("<text x=\"{:.1f}\" y=\"20\" text-anchor=\"middle\">{}</text>\n",
+                        x + kBarWidth * place * unit / high, tick_text(place));
+  }
+  return text;
+}
+
+std::string image(const Plot& plot, const Picture& picture) {
+  return fmt::format(
+      "<image x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\" "
+      "href=\"data:image/png;base64,{}\"/>\n",
+      kLeft, kTop, plot.width(), plot.height(), base64(png_of(picture)));
+}
+
+}  // namespace
+
+std::vector<std::string> picture_svgs(const Report& report, const std::vector<Frame>& frames) {
+  const Scene& scene = report.scene;
+  const double gravity = scene.method.gravity.norm();
+  const bool scaled = scene.scales && gravity > 0.0;
+  const double unit =
+      scaled ? scene.method.reference_density * gravity * scene.scales->height : 1.0;
+  const double time = scaled ? std::sqrt(scene.scales->height / gravity) : 1.0;
+  const Plot plot = plot_of(picture_view(scene, particle_box(frames)));
+  PictureFrame how;
+  how.view = plot.view;
+  how.diameter = scene.method.spacing;
+  how.high = colour_end(frames, how.quantity);
+  how.width = std::clamp(static_cast<int>(1.5 * plot.width()), 64, 1000);
+  const Picture solids = draw_solids(scene, how);
+  const bool kilo = !scaled && how.high >= 2000.0;
+  std::vector<std::string> svgs;
+  for (const Frame& frame : frames) {
+    const std::string title =
+        scaled ? fmt::format("T = {:.2f} (t = {:.4g} s)", frame.time / time, frame.time)
+               : fmt::format("t = {:.4g} s", frame.time);
+    std::string text = fmt::format(
+        "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" "
+        "role=\"img\">\n<title>Particles at {}, coloured by pressure</title>\n"
+        "<text class=\"title\" x=\"{}\" y=\"35.5\">{}</text>\n",
+        kWidth, kTop + plot.height() + kBottom, title, kLeft, title);
+    text += fmt::format(
+        "<rect class=\"canvas\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kLeft,
+        kTop, plot.width(), plot.height());
+    Picture picture = solids;
+    draw_gate(picture, scene, how, frame.time);
+    draw_particles(picture, frame, how);
+    text += image(plot, picture) + axes(plot);
+    text += colour_bar(plot, svgs.size(), how.high, kilo ? 1e3 : unit,
+                       scaled ? "P" : (kilo ? "p, kPa" : "p, Pa"));
+    text += fmt::format(
+        "<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n</svg>\n",
+        kLeft, kTop, plot.width(), plot.height());
+    svgs.push_back(std::move(text));
+  }
+  return svgs;
+}
+
+}  // namespace sluice

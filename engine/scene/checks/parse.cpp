@@ -1,0 +1,109 @@
+#include "engine/scene/checks/parse.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/scene/checks/check.hpp"
+#include "engine/scene/checks/meaning.hpp"
+#include "engine/scene/format/describe.hpp"
+#include "engine/scene/format/json_text.hpp"
+#include "engine/scene/format/numerics_json.hpp"
+#include "engine/scene/format/reader.hpp"
+
+namespace sluice {
+namespace {
+
+using nlohmann::json;
+
+/// What a scene says in `numerics`, an empty object where it says nothing.
+json numerics_of(const json& scene) {
+  const auto found = scene.is_object() ? scene.find("numerics") : scene.end();
+  const bool there = scene.is_object() && found != scene.end() && found->is_object();
+  return there ? *found : json::object();
+}
+
+/// The scheme that numerics name; nothing also where that is no word, which the Reader reports.
+std::optional<Scheme> named_scheme(const json& numerics) {
+  const auto found = numerics.find("scheme");
+  if (found == numerics.end()) return std::nullopt;
+  for (const auto& each : kSchemeWords) {
+    if (*found == each.word) return each.value;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> pointers_of(const json& numerics) {
+  std::vector<std::string> pointers;
+  if (numerics.empty()) return pointers;
+  const json flat = numerics.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    if (pointer != "/scheme") pointers.push_back(pointer);
+  }
+  return pointers;
+}
+
+Document read_document(const json& scene, std::optional<Scheme> scheme, Problems& problems) {
+  Document document(scheme);
+  document.scene.numerics.named = pointers_of(numerics_of(scene));
+  Reader reader(scene, "", problems);
+  describe(reader, document);
+  reader.finish();
+  leave_out_excluded(document.scene.method, document.scene.numerics);
+  return document;
+}
+
+/// What a scene means that names no scheme; a problem where that cannot be told.
+Document read_without_scheme(const json& scene, SceneOrigin origin, Problems& problems) {
+  if (origin == SceneOrigin::job) return read_document(scene, std::nullopt, problems);
+  Document now = read_document(scene, Scheme::recommended, problems);
+  if (!problems.empty()) return now;
+  Document before = read_document(scene, std::nullopt, problems);
+  const Document paper = read_document(scene, Scheme::paper, problems);
+  const Meanings meanings{now, paper, before};
+  if (!has_two_meanings(meanings)) return now;
+  if (origin == SceneOrigin::study) return before;
+  problems.add("/numerics", how_to_tell(meanings));
+  return now;
+}
+
+}  // namespace
+
+ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOrigin origin) {
+  Problems problems;
+  Problems warnings;
+  const auto scene = read_json(text, problems);
+  if (!scene) return {std::nullopt, problems.take(), {}};
+
+  const json numerics = numerics_of(*scene);
+  const Document document =
+      numerics.contains("scheme")
+          ? read_document(*scene, named_scheme(numerics).value_or(Scheme::recommended), problems)
+          : read_without_scheme(*scene, origin, problems);
+  if (scene->is_object()) check(document, {stability, origin}, problems, warnings);
+
+  if (!problems.empty()) return {std::nullopt, problems.take(), {}};
+  return {resolve(document), {}, warnings.take()};
+}
+
+ParseResult parse_job_scene(std::string_view text) {
+  return parse_scene(text, StabilityCheck::skip, SceneOrigin::job);
+}
+
+std::string text_for_folder(const std::string& text) {
+  const ParseResult before = parse_job_scene(text);
+  const ParseResult now = parse_scene(text, StabilityCheck::skip, SceneOrigin::study);
+  if (!now.scene ||
+      (before.scene && numerics_json(before.scene->method) == numerics_json(now.scene->method))) {
+    return text;
+  }
+  auto scene = nlohmann::ordered_json::parse(text);
+  scene["numerics"]["scheme"] = word_for(kSchemeWords, Scheme::recommended);
+  std::string named = scene.dump(2) + "\n";
+  if (named.size() > kMaxSceneBytes) named = scene.dump();
+  if (named.size() <= kMaxSceneBytes) return named;
+  throw SceneError({"", fmt::format("is {} bytes with the scheme that it means but does not name; "
+                                    "at most {}: write \"scheme\": \"recommended\" in numerics "
+                                    "and shorten its curves",
+                                    named.size(), kMaxSceneBytes)});
+}
+
+}  // namespace sluice

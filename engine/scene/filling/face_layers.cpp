@@ -1,0 +1,222 @@
+#include "engine/scene/filling/face_layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "engine/scene/filling/walls.hpp"
+#include "engine/scene/geometry/geometry.hpp"
+
+namespace sluice {
+namespace {
+
+// In dx: nearer particles would stand for the same area twice.
+constexpr double kApart = 0.75;
+constexpr double kLayerSlack = 1e-3;  // of dx: rounding far from the origin
+constexpr double kFarthest = 4.0;     // in dx, that a layer reaches past the end of its face
+constexpr double kCurved = 0.85;      // cosine of the turn up to which faces are one curved face
+constexpr double kStraight = 0.02;    // sine of a turn that is none
+
+/// Points that keep a distance to one another.
+class ApartPoints {
+ public:
+  explicit ApartPoints(double cell) : cell_(cell) {}
+
+  void add(const Vec& point, double apart) {
+    const auto [column, row] = place(point);
+    for (std::int64_t c = column - 1; c <= column + 1; ++c) {
+      for (std::int64_t r = row - 1; r <= row + 1; ++r) {
+        const auto found = bins_.find({c, r});
+        if (found == bins_.end()) continue;
+        for (const Vec& other : found->second) {
+          if ((other - point).norm() < apart) return;
+        }
+      }
+    }
+    bins_[{column, row}].push_back(point);
+    points_.push_back(point);
+  }
+  [[nodiscard]] std::vector<Vec> take() { return std::move(points_); }
+
+ private:
+  using Place = std::pair<std::int64_t, std::int64_t>;
+
+  [[nodiscard]] Place place(const Vec& point) const {
+    return {static_cast<std::int64_t>(std::floor(point.x() / cell_)),
+            static_cast<std::int64_t>(std::floor(point.y() / cell_))};
+  }
+
+  double cell_;
+  std::map<Place, std::vector<Vec>> bins_;
+  std::vector<Vec> points_;
+};
+
+struct Face {
+  Vec begin = Vec::Zero();
+  Vec along = Vec::Zero();
+  Vec in = Vec::Zero();
+  double length = 0.0;
+  bool open = true;
+};
+
+/// A part of a layer along faces without a sharp corner between them.
+struct Strip {
+  std::vector<Vec> points;
+  bool from_corner = true;  ///< else it begins at a covered face, where half a cell stays free
+  bool to_corner = true;
+};
+
+class FaceLayers {
+ public:
+  FaceLayers(const Polygon& polygon, const Method& method,
+             const std::function<bool(const Vec&)>& covered)
+      : polygon_(polygon),
+        dx_(method.spacing),
+        layers_(wall_layers(method)),
+        covered_(covered),
+        made_(dx_) {
+    std::vector<Vec> corners = polygon.points;
+    if (is_clockwise(corners)) std::reverse(corners.begin(), corners.end());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec edge = corners[(i + 1) % corners.size()] - corners[i];
+      const Vec along = edge.normalized();
+      Face face{corners[i], along, Vec(-along.y(), along.x()), edge.norm(), true};
+      face.open = !all_along(
+          face, [&](const Vec& place) { return covered_(place - kLayerSlack * dx_ * face.in); });
+      faces_.push_back(face);
+    }
+  }
+
+  /// Whether the layers of two faces stay clear of each other: behind each open face the polygon is
+  /// thick enough, or ends in what is solid too.
+  [[nodiscard]] bool is_thick() const {
+    const double enough = (2.0 * static_cast<double>(layers_) - 1.0 - kLayerSlack) * dx_;
+    return std::all_of(faces_.begin(), faces_.end(), [&](const Face& face) {
+      return !face.open || all_along(face, [&](const Vec& place) {
+        for (const double way : chords(polygon_, place, face.in)) {
+          if (way < kLayerSlack * dx_) continue;
+          return way > enough || covered_(place + (way + kLayerSlack * dx_) * face.in);
+        }
+        return true;
+      });
+    });
+  }
+
+  std::vector<Vec> make() {
+    for (double k = 0; k < static_cast<double>(layers_); ++k) add_layer((k + 0.5) * dx_);
+    return made_.take();
+  }
+
+ private:
+  static bool is_clockwise(const std::vector<Vec>& corners) {
+    double twice_area = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec a = corners[i] - corners[0];
+      const Vec b = corners[(i + 1) % corners.size()] - corners[0];
+      twice_area += a.x() * b.y() - a.y() * b.x();
+    }
+    return twice_area < 0.0;
+  }
+
+  /// Whether something holds at places half a spacing apart along a face.
+  template <class F>
+  [[nodiscard]] bool all_along(const Face& face, const F& holds) const {
+    const double count = std::ceil(2 * face.length / dx_);
+    for (double k = 0; k < count; ++k) {
+      if (!holds(face.begin + (k + 0.5) / count * face.length * face.along)) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] const Face& next(std::size_t i) const { return faces_[(i + 1) % faces_.size()]; }
+
+  /// Where the lines of two faces in turn meet, each moved in by `depth` if it is open.
+  [[nodiscard]] Vec meet(const Face& a, const Face& b, double depth) const {
+    const double a_depth = a.open ? depth : 0.0, b_depth = b.open ? depth : 0.0;
+    const Vec foot = b.begin + (a.open ? a_depth * a.in : b_depth * b.in);
+    const double turn = a.along.dot(b.in);
+    if (std::abs(turn) < kStraight) return foot;
+    const double back = -a.length - b.length, past = kFarthest * dx_;
+    if (a.open) {
+      const double way = (b_depth - a_depth * a.in.dot(b.in)) / turn;
+      return foot + std::clamp(way, back, past) * a.along;
+    }
+    return foot - std::clamp(-b_depth * b.in.dot(a.in) / turn, back, past) * b.along;
+  }
+
+  /// Whether a strip goes on from this face to the next.
+  [[nodiscard]] bool goes_on(std::size_t i) const {
+    return faces_[i].open && next(i).open && faces_[i].along.dot(next(i).along) > kCurved;
+  }
+
+  void add_layer(double depth) {
+    const std::size_t n = faces_.size();
+    std::size_t start = 0;
+    while (start < n && goes_on((start + n - 1) % n)) ++start;
+    if (start == n) start = 0;  // one round face
+    Strip strip;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = (start + k) % n;
+      if (!faces_[i].open) continue;
+      const Face& before = faces_[(i + n - 1) % n];
+      if (strip.points.empty()) {
+        strip.points.push_back(meet(before, faces_[i], depth));
+        strip.from_corner = before.open;
+      }
+      strip.points.push_back(meet(faces_[i], next(i), depth));
+      strip.to_corner = next(i).open;
+      if (goes_on(i) && k + 1 < n) continue;
+      add_strip(strip, depth);
+      strip = {};
+    }
+  }
+
+  void add_strip(const Strip& strip, double depth) {
+    double length = 0.0;
+    for (std::size_t i = 1; i < strip.points.size(); ++i) {
+      length += (strip.points[i] - strip.points[i - 1]).norm();
+    }
+    const double ends = (strip.from_corner ? 0.0 : 0.5) + (strip.to_corner ? 0.0 : 0.5);
+    const double count = std::max(0.0, std::round(length / dx_ - ends));
+    const double step = count + ends > 0 ? std::max(length / (count + ends), dx_ / 4) : dx_;
+    double wanted = strip.from_corner ? 0.0 : step / 2, done = 0.0;
+    for (std::size_t i = 1; i < strip.points.size(); ++i) {
+      const Vec way = strip.points[i] - strip.points[i - 1];
+      for (; wanted <= done + way.norm() + kLayerSlack * dx_; wanted += step) {
+        add(strip.points[i - 1] + (wanted - done) * way.normalized(), depth);
+      }
+      done += way.norm();
+    }
+  }
+
+  void add(const Vec& point, double depth) {
+    if (!contains(polygon_, point)) return;
+    for (const Face& face : faces_) {
+      if (!face.open) continue;
+      const double along = std::clamp((point - face.begin).dot(face.along), 0.0, face.length);
+      const double distance = (point - face.begin - along * face.along).norm();
+      if (distance < depth - kLayerSlack * dx_) return;
+    }
+    made_.add(point, (kApart - kLayerSlack) * dx_);
+  }
+
+  const Shape polygon_;
+  double dx_;
+  std::int64_t layers_;
+  const std::function<bool(const Vec&)>& covered_;
+  std::vector<Face> faces_;
+  ApartPoints made_;
+};
+
+}  // namespace
+
+std::optional<std::vector<Vec>> face_layers(const Polygon& polygon, const Method& method,
+                                            const std::function<bool(const Vec&)>& covered) {
+  FaceLayers layers(polygon, method, covered);
+  if (!layers.is_thick()) return std::nullopt;
+  return layers.make();
+}
+
+}  // namespace sluice

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/scene/model/scene.hpp"
+
+namespace sluice {
+
+/// Layers of dummy particles behind a solid surface: as many as hold the kernel's support, at least
+/// three.
+[[nodiscard]] std::int64_t wall_layers(const Method& method);
+
+/// Dummy particles around a tank, m: layer k = 0, 1, ... lies (k + 1/2) dx outside the floor, both
+/// sides and, unless the top is open, the lid; corners included. Along a wall of length L the
+/// particles are L/n apart with n = round(L/dx), so that a whole number fits.
+[[nodiscard]] std::vector<Vec> tank_walls(const Tank& tank, const Method& method);
+
+/// How many tank_walls() makes; a double, so that an absurd tank gives a large number.
+[[nodiscard]] double count_tank_walls(const Tank& tank, const Method& method);
+
+/// What a gate fills: wall_layers() spacings to the right of its x, from the floor up.
+[[nodiscard]] Rectangle gate_body(const Gate& gate, const Method& method);
+
+/// All that stands in the tank at the start: the obstacles, then the gate.
+[[nodiscard]] std::vector<Shape> solid_bodies(const Scene& scene);
+
+/// All dummy particles of a scene, m: the tank's, then those of its solid bodies, which are those
+/// of obstacle_walls() but for polygons that fluid touches whose lattice does not fit it: theirs
+/// are face_layers(). No fluid is made.
+[[nodiscard]] std::vector<Vec> scene_walls(const Scene& scene);
+
+/// Dummy particles of obstacles, m: at the cell centres of each, from a cell size stretched to fit
+/// a rectangle and from dx otherwise, no deeper than wall_layers() cells below the surface. Where
+/// obstacles overlap, the first one's particles stand.
+[[nodiscard]] std::vector<Vec> obstacle_walls(const std::vector<Shape>& obstacles,
+                                              const Method& method);
+
+}  // namespace sluice

@@ -1,0 +1,156 @@
+#include "engine/scene/format/document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "engine/scene/filling/walls.hpp"
+#include "engine/scene/geometry/geometry.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr double kWaterDensity = 1000.0;  // kg/m^3
+
+// h/dx with the fewest digits of which the product with dx is h again.
+double ratio_of(double smoothing_length, double spacing) {
+  const double quotient = smoothing_length / spacing;
+  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    std::array<char, 40> text{};
+    char* const end = text.data() + text.size();
+    const auto written =
+        std::to_chars(text.data(), end, quotient, std::chars_format::general, digits);
+    double ratio = 0.0;
+    std::from_chars(text.data(), written.ptr, ratio);
+    if (ratio * spacing == smoothing_length) return ratio;
+  }
+  for (const double ratio : {std::nextafter(quotient, 0.0), std::nextafter(quotient, 10.0)}) {
+    if (ratio * spacing == smoothing_length) return ratio;
+  }
+  return quotient;
+}
+
+Box fluid_bounds(const Scene& scene) {
+  Box box = bounds(scene.fluid.front().shape);
+  for (const FluidRegion& region : scene.fluid) {
+    const Box other = bounds(region.shape);
+    box.min = box.min.cwiseMin(other.min);
+    box.max = box.max.cwiseMax(other.max);
+  }
+  return box;
+}
+
+// Largest value of direction . x over the fluid.
+double farthest_fluid(const Scene& scene, const Vec& direction) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const FluidRegion& region : scene.fluid) {
+    most = std::max(most, farthest_along(region.shape, direction));
+  }
+  return most;
+}
+
+Box domain_of_tank(const Scene& scene) {
+  const Method& method = scene.method;
+  const double walls =
+      static_cast<double>(wall_layers(method)) * method.spacing + method.smoothing_length;
+  const Tank& tank = *scene.tank;
+  const double above =
+      tank.open_top ? 2 * std::max(fluid_height(scene), fluid_bounds(scene).size().y()) : walls;
+  return {Vec::Constant(-walls), Vec(tank.width + walls, tank.height + std::max(above, walls))};
+}
+
+// Where the fluid starts and where it flies to with nothing in its way.
+Box domain_of_flight(const Scene& scene) {
+  const Box start = fluid_bounds(scene);
+  Box box = start;
+  const double t = scene.end_time;
+  const Vec fall = scene.method.gravity * (t * t / 2);
+  for (const FluidRegion& region : scene.fluid) {
+    const Vec flight = region.velocity * t + fall;
+    // An arc may rise above both of its ends: v^2/2f at the most along each axis.
+    const Vec rise = region.velocity.binaryExpr(scene.method.gravity, [t](double v, double f) {
+      const bool turns = v * f < 0 && -v / f < t;
+      return turns ? -v * v / (2 * f) : 0.0;
+    });
+    const Vec spread = Vec::Constant((greatest_speed(region) - region.velocity.norm()) * t);
+    for (const Vec& shift : {flight, rise}) {
+      box.min = box.min.cwiseMin(start.min + shift - spread);
+      box.max = box.max.cwiseMax(start.max + shift + spread);
+    }
+  }
+  const double margin = start.size().maxCoeff() + scene.method.support();
+  return {box.min - Vec::Constant(margin), box.max + Vec::Constant(margin)};
+}
+
+}  // namespace
+
+Document::Document(std::optional<Scheme> scheme) {
+  scene.numerics.scheme = scheme;
+  scene.method = method_of(scheme);
+  scene.method.reference_density = kWaterDensity;
+}
+
+Document::Document(const Scene& from)
+    : scene(from),
+      domain(from.method.domain),
+      sound_speed(from.method.sound_speed),
+      smoothing_ratio(ratio_of(from.method.smoothing_length, from.method.spacing)) {
+  if (!from.method.gravity.isZero(0.0)) gravity = from.method.gravity;
+  scene.numerics = {};  // every key is there now
+}
+
+double default_smoothing_ratio(KernelKind kernel) {
+  return kernel == KernelKind::truncated_gaussian ? 1.0 : 1.5;
+}
+
+double fluid_height(const Scene& scene) {
+  const Vec& f = scene.method.gravity;
+  const double strength = f.norm();
+  if (strength == 0.0) return 0.0;
+  const Vec down = f / strength;
+  const double lowest =
+      scene.tank
+          ? farthest_along(Rectangle{Vec::Zero(), Vec(scene.tank->width, scene.tank->height)}, down)
+          : farthest_fluid(scene, down);
+  return lowest + farthest_fluid(scene, -down);
+}
+
+double default_sound_speed(const Scene& scene) {
+  return 10 * std::sqrt(2 * scene.method.gravity.norm() * fluid_height(scene));
+}
+
+Box default_domain(const Scene& scene) {
+  return scene.tank ? domain_of_tank(scene) : domain_of_flight(scene);
+}
+
+Scene resolve(const Document& document) {
+  Scene scene = document.scene;
+  Method& method = scene.method;
+  method.gravity = document.gravity.value_or(Vec::Zero());
+  method.smoothing_length =
+      document.smoothing_ratio.value_or(default_smoothing_ratio(method.kernel)) * method.spacing;
+  method.sound_speed = document.sound_speed ? *document.sound_speed : default_sound_speed(scene);
+  method.domain = document.domain ? *document.domain : default_domain(scene);
+  // Nothing passes over a lid: what leaves a closed tank has leaked, wherever.
+  if (scene.tank && scene.tank->open_top) {
+    method.wall_top = scene.tank->height;
+    const double middle = static_cast<double>(wall_layers(method)) / 2 * method.spacing;
+    method.rim_left = -middle;
+    method.rim_right = scene.tank->width + middle;
+  }
+  if (scene.gate && scene.tank) {
+    if (scene.gate->height == 0.0) scene.gate->height = scene.tank->height;
+    method.lifted_wall = LiftedWall{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
+  }
+  for (Sensor& sensor : scene.sensors) {
+    const bool wants_length = sensor.kind == SensorKind::pressure;
+    if (wants_length && sensor.smoothing_length == 0.0) {
+      sensor.smoothing_length = method.smoothing_length;
+    }
+  }
+  return scene;
+}
+
+}  // namespace sluice

@@ -1,0 +1,203 @@
+#include "engine/scene/format/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/scene/format/code_points.hpp"
+
+namespace sluice {
+namespace {
+
+bool is_name_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '.' || c == '-';
+}
+
+bool is_control_character(char c) { return (c >= 0 && c < ' ') || c == 0x7f; }
+
+}  // namespace
+
+Reader::Reader(const json& value, std::string pointer, Problems& problems)
+    : value_(value), pointer_(std::move(pointer)), problems_(problems) {
+  is_object_ = value.is_object();
+  if (!is_object_) {
+    problems_.add(pointer_, fmt::format("is {}; must be an object", name_value(value)));
+  }
+}
+
+const nlohmann::json* Reader::find(std::string_view key, Need need, std::string_view about) {
+  known_.push_back(key);
+  if (!is_object_) return nullptr;
+  if (const auto found = value_.find(key); found != value_.end()) return &*found;
+  if (need == Need::required) {
+    problems_.add(at(pointer_, key), fmt::format("is missing; must be given: {}", about));
+  }
+  return nullptr;
+}
+
+const nlohmann::json* Reader::find_list(std::string_view key, const ListSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return nullptr;
+  const std::string allowed = fmt::format("an array of {} to {} entries", spec.min, spec.max);
+  if (!found->is_array() || found->size() < spec.min || found->size() > spec.max) {
+    problems_.add(at(pointer_, key), fmt::format("is {}; must be {}", name_value(*found), allowed));
+    return nullptr;
+  }
+  return found;
+}
+
+std::optional<double> Reader::read_number(const json& value, const std::string& pointer,
+                                          const NumberSpec& spec) {
+  const std::string allowed = to_text(spec.range, spec.unit);
+  if (!value.is_number()) {
+    problems_.add(pointer, fmt::format("is {}; must be a number {}", name_value(value), allowed));
+    return std::nullopt;
+  }
+  // Adding zero turns -0 into 0, so that equal scenes have equal bits.
+  const double number = value.get<double>() + 0.0;
+  if (!std::isfinite(number) || !spec.range.contains(number)) {
+    problems_.add(pointer,
+                  fmt::format("is {}; must be {}: {}", excerpt(value), allowed, spec.about));
+    return std::nullopt;
+  }
+  return number;
+}
+
+std::optional<Vec> Reader::read_vector(const json& value, const std::string& pointer,
+                                       const NumberSpec& spec) {
+  if (!value.is_array() || value.size() != kDim) {
+    problems_.add(pointer, fmt::format("is {}; must be an array of {} numbers {}",
+                                       name_value(value), kDim, to_text(spec.range, spec.unit)));
+    return std::nullopt;
+  }
+  const auto x = read_number(value[0], at(pointer, std::size_t{0}), spec);
+  const auto y = read_number(value[1], at(pointer, std::size_t{1}), spec);
+  if (!x || !y) return std::nullopt;
+  return Vec(*x, *y);
+}
+
+std::optional<std::string> Reader::pick_word(const json& value, const std::string& pointer,
+                                             std::span<const std::string_view> words) {
+  if (!value.is_string()) {
+    problems_.add(pointer,
+                  fmt::format("is {}; must be a word, {}", name_value(value), hint("", words)));
+    return std::nullopt;
+  }
+  const auto& word = value.get_ref<const std::string&>();
+  if (std::find(words.begin(), words.end(), word) == words.end()) {
+    problems_.add(pointer, fmt::format("is {}; {}", excerpt(value), hint(word, words)));
+    return std::nullopt;
+  }
+  return word;
+}
+
+void Reader::number(std::string_view key, double& member, const NumberSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  if (const auto value = read_number(*found, at(pointer_, key), spec)) member = *value;
+}
+
+void Reader::number(std::string_view key, std::optional<double>& member, const NumberSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found != nullptr) member = read_number(*found, at(pointer_, key), spec);
+}
+
+void Reader::integer(std::string_view key, int& member, const NumberSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  const auto value = read_number(*found, at(pointer_, key), spec);
+  if (!value) return;
+  if (*value != std::floor(*value)) {
+    problems_.add(at(pointer_, key), fmt::format("is {}; must be a whole number {}",
+                                                 excerpt(*found), to_text(spec.range, spec.unit)));
+    return;
+  }
+  member = static_cast<int>(*value);
+}
+
+void Reader::flag(std::string_view key, bool& member, const KeySpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  if (found->is_boolean()) {
+    member = found->get<bool>();
+  } else {
+    problems_.add(at(pointer_, key),
+                  fmt::format("is {}; must be true or false", name_value(*found)));
+  }
+}
+
+void Reader::text(std::string_view key, std::string& member, const TextSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  const bool name = spec.characters == Characters::name;
+  const std::string allowed =
+      fmt::format("a text of {} to {} characters, {}", spec.min, spec.max,
+                  name ? "each a letter, a digit or one of _ . -" : "none a control character");
+  const auto valid = [&](const std::string& text) {
+    const std::size_t length = count_code_points(text);
+    return length >= spec.min && length <= spec.max &&
+           (name ? std::all_of(text.begin(), text.end(), is_name_character)
+                 : std::none_of(text.begin(), text.end(), is_control_character));
+  };
+  if (found->is_string() && valid(found->get_ref<const std::string&>())) {
+    member = found->get<std::string>();
+  } else {
+    problems_.add(at(pointer_, key), fmt::format("is {}; must be {}", name_value(*found), allowed));
+  }
+}
+
+void Reader::vector(std::string_view key, Vec& member, const NumberSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  if (const auto value = read_vector(*found, at(pointer_, key), spec)) member = *value;
+}
+
+void Reader::vector(std::string_view key, std::optional<Vec>& member, const NumberSpec& spec) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found != nullptr) member = read_vector(*found, at(pointer_, key), spec);
+}
+
+void Reader::points(std::string_view key, std::vector<Vec>& member, const ListSpec& spec,
+                    const NumberSpec& point) {
+  const json* found = find_list(key, spec);
+  if (found == nullptr) return;
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    if (const auto value = read_vector((*found)[i], at(at(pointer_, key), i), point)) {
+      member.push_back(*value);
+    }
+  }
+}
+
+void Reader::numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
+                     const NumberSpec& each) {
+  const json* found = find_list(key, spec);
+  if (found == nullptr) return;
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    if (const auto value = read_number((*found)[i], at(at(pointer_, key), i), each)) {
+      member.push_back(*value);
+    }
+  }
+}
+
+void Reader::any(std::string_view key, json& member, const KeySpec& spec,
+                 std::initializer_list<std::string_view> types) {
+  const json* found = find(key, spec.need, spec.about);
+  if (found == nullptr) return;
+  if (std::find(types.begin(), types.end(), std::string_view(found->type_name())) != types.end()) {
+    member = *found;
+    return;
+  }
+  problems_.add(at(pointer_, key), fmt::format("is {}; must be of type {}: {}", name_value(*found),
+                                               fmt::join(types, " or "), spec.about));
+}
+
+void Reader::finish() {
+  if (!is_object_ || any_key_) return;
+  for (const auto& [key, value] : value_.items()) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    problems_.add(at(pointer_, key), fmt::format("unknown key; {}", hint(key, known_)));
+  }
+}
+
+}  // namespace sluice

@@ -1,0 +1,113 @@
+#include "engine/scene/geometry/leaks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "engine/scene/geometry/geometry.hpp"
+#include "engine/scene/geometry/solids.hpp"
+#include "engine/scene/geometry/thin_solids.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr double kShallow = 0.4;  // spacings; nobody has leaked who is less deep
+constexpr double kDeepEnough = 1.01;
+constexpr int kWays = 8;  // across a solid
+constexpr double kStepsPerSpacing = 8;
+
+bool is_deep(const LiftedWall& gate, const Vec& place, double time, double depth) {
+  Box standing = gate.place;
+  standing.min.y() += gate.speed * time;
+  return grown(standing, -depth).contains(place);
+}
+
+void add_tank(const Tank& tank, double depth, Method& method) {
+  method.room = {Vec::Constant(-depth), Vec(tank.width, tank.height).array() + depth};
+  if (!tank.open_top) return;
+  method.room.max.y() = std::numeric_limits<double>::infinity();
+  method.walls_reach = tank.height - depth;
+}
+
+/// The obstacles, with all that is needed to say who is deep in them.
+class Obstacles {
+ public:
+  explicit Obstacles(const Scene& scene)
+      : scene_(std::make_shared<const Scene>(scene)),
+        solids_(*scene_),
+        spacing_(scene.method.spacing) {
+    for (const Shape& shape : scene_->obstacles) boxes_.push_back(bounds(shape));
+  }
+
+  [[nodiscard]] bool hold_deep(const Vec& place) const {
+    if (!hold(place)) return false;
+    const double depth = solids_.depth(place, kDeepEnough * spacing_);
+    return depth > kShallow * spacing_ && depth > allowed_depth(thickness(place), spacing_);
+  }
+
+ private:
+  [[nodiscard]] bool hold(const Vec& place) const {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (boxes_[i].contains(place) && contains(scene_->obstacles[i], place)) return true;
+    }
+    return false;
+  }
+
+  /// How thick what is solid is around a place, m, where it keeps fluid from fluid; what is thicker
+  /// than four spacings counts as that, and so does a tip: fluid flows round it anyway.
+  [[nodiscard]] double thickness(const Vec& place) const {
+    const double thick = 4 * spacing_;
+    const double beyond = 0.5 * spacing_;
+    double least = thick;
+    Vec one = place;
+    Vec other = place;
+    for (int k = 0; k < kWays; ++k) {
+      const double angle = std::numbers::pi * k / kWays;
+      const Vec way(std::cos(angle), std::sin(angle));
+      const auto to_open = [&](const Vec& direction) {
+        const double step = spacing_ / kStepsPerSpacing;
+        return solids_.reach(place, direction, least, step).value_or(least);
+      };
+      const double ahead = to_open(way);
+      const double back = to_open(-way);
+      if (ahead + back >= least) continue;
+      least = ahead + back;
+      one = place + (ahead + beyond) * way;
+      other = place - (back + beyond) * way;
+    }
+    const bool thin = least < thick && keeps_apart(solids_, one, other, least, spacing_);
+    return thin ? least : thick;
+  }
+
+  std::shared_ptr<const Scene> scene_;  ///< that the solids are of
+  Solids solids_;
+  double spacing_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace
+
+double allowed_depth(double thickness, double spacing) {
+  return std::clamp(0.6 * 0.5 * thickness, kShallow * spacing, spacing);
+}
+
+Method method_with_solids(const Scene& scene) {
+  Method method = scene.method;
+  const double depth = method.spacing;
+  if (scene.tank) add_tank(*scene.tank, depth, method);
+  if (scene.obstacles.empty() && !method.lifted_wall) return method;
+  Scene solid;
+  solid.tank = scene.tank;
+  solid.obstacles = scene.obstacles;
+  solid.method.spacing = method.spacing;
+  method.in_solid = [obstacles = Obstacles(solid), gate = method.lifted_wall, depth](
+                        const Vec& place, double time) {
+    return (gate && is_deep(*gate, place, time, depth)) || obstacles.hold_deep(place);
+  };
+  return method;
+}
+
+}  // namespace sluice

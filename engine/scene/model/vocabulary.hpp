@@ -1,0 +1,106 @@
+#pragma once
+
+#include "engine/scene/model/scene.hpp"
+#include "engine/scene/model/spec.hpp"
+
+namespace sluice {
+
+/// The alternatives of Shape, in its order.
+enum class ShapeKind { rectangle, circle, ellipse, polygon };
+
+[[nodiscard]] inline ShapeKind kind_of(const Shape& shape) {
+  return static_cast<ShapeKind>(shape.index());
+}
+[[nodiscard]] inline Shape shape_of(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::rectangle:
+      return Rectangle{};
+    case ShapeKind::circle:
+      return Circle{};
+    case ShapeKind::ellipse:
+      return Ellipse{};
+    case ShapeKind::polygon:
+      return Polygon{};
+  }
+  return Rectangle{};
+}
+
+// The words that scenes write for each enumeration.
+inline constexpr Words<ShapeKind, 4> kShapeWords{{
+    {"rectangle", ShapeKind::rectangle, "axis-aligned"},
+    {"circle", ShapeKind::circle, ""},
+    {"ellipse", ShapeKind::ellipse, "axis-aligned"},
+    {"polygon", ShapeKind::polygon, "without self-intersections"},
+}};
+inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
+    {"hydrostatic", InitialPressure::hydrostatic, "that of water at rest below the region's top"},
+    {"zero", InitialPressure::zero, "none"},
+}};
+inline constexpr Words<Scheme, 2> kSchemeWords{{
+    {"recommended", Scheme::recommended,
+     "wendland_c2, kick_drift_kick at C = 1, fourtakas, alpha 0.02 with beta 0.5, wall_drag, "
+     "clamped "
+     "walls, particle_shifting"},
+    {"paper", Scheme::paper,
+     "truncated_gaussian, modified_leap_frog at C = 0.25, molteni_colagrossi, alpha 0.02, "
+     "extrapolated walls, reinitialisation"},
+}};
+inline constexpr Words<KernelKind, 2> kKernelWords{{
+    {"truncated_gaussian", KernelKind::truncated_gaussian, "support 3h"},
+    {"wendland_c2", KernelKind::wendland_c2, "support 2h"},
+}};
+inline constexpr Words<Integrator, 2> kIntegratorWords{{
+    {"modified_leap_frog", Integrator::modified_leap_frog, "the paper's; steps to about C = 0.5"},
+    {"kick_drift_kick", Integrator::kick_drift_kick, "stable at larger steps, to about C = 1"},
+}};
+inline constexpr Words<Precision, 2> kPrecisionWords{{
+    {"mixed", Precision::mixed, "sums in single, state in double precision"},
+    {"double", Precision::double_precision, "everything in double precision"},
+}};
+inline constexpr Words<DiffusionKind, 2> kDiffusionWords{{
+    {"molteni_colagrossi", DiffusionKind::molteni_colagrossi, "of the density"},
+    {"fourtakas", DiffusionKind::fourtakas,
+     "of the density less its hydrostatic part, between fluid particles"},
+}};
+inline constexpr Words<WallPressure, 2> kWallPressureWords{{
+    {"extrapolated", WallPressure::extrapolated, "may be negative"},
+    {"clamped", WallPressure::clamped, "not below zero: keeps particles from the wall's far side"},
+}};
+inline constexpr Words<SensorKind, 6> kSensorWords{{
+    {"pressure", SensorKind::pressure,
+     "pressure at a point: the kernel's mean over the fluid around it, eq. 11, or with "
+     "air_pressure "
+     "that over fluid and air; dry, without a value, where no fluid is within the kernel"},
+    {"surface_height", SensorKind::surface_height,
+     "greatest height at x where fluid fills half of the kernel, so of splashes and of the upper "
+     "one of two surfaces too; nearer to a tank wall than half of the kernel's support, taken "
+     "there"},
+    {"surge_front", SensorKind::surge_front,
+     "largest x of any fluid particle, at most the tank's right wall: a front only where a column "
+     "on "
+     "the left runs to the right over a dry bed; spray counts"},
+    {"column_height", SensorKind::column_height,
+     "surface_height at x, by default beside the left wall"},
+    {"energy", SensorKind::energy,
+     "kinetic, potential (against gravity, zero at the origin) and internal energy of the fluid "
+     "per "
+     "metre of depth"},
+    {"arrival", SensorKind::arrival,
+     "the time at which a fluid particle first comes within 1.5 particle distances of a point"},
+}};
+
+inline constexpr Words<Experiment, 1> kExperimentWords{{
+    {"lobovsky2014_h300", Experiment::lobovsky2014_h300,
+     "dam break of Lobovsky et al. 2014, column 300 mm high"},
+}};
+inline constexpr Words<ReferenceKind, 3> kReferenceWords{{
+    {"experiment", ReferenceKind::experiment, "built into the program"},
+    {"series", ReferenceKind::series, "curves that stand here"},
+    {"none", ReferenceKind::none, "no comparison"},
+}};
+inline constexpr Words<ReferenceUnits, 2> kReferenceUnitWords{{
+    {"si", ReferenceUnits::si, "s and the sensor's unit"},
+    {"dimensionless", ReferenceUnits::dimensionless, "by the scales, eqs. 19-22"},
+}};
+
+}  // namespace sluice

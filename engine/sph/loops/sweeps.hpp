@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/sph/loops/updates.hpp"
+#include "engine/sph/method/method.hpp"
+#include "engine/sph/pairs/pair_arrays.hpp"
+
+namespace sluice {
+
+/// Constants of the terms, dimensionless (terms-inl.hpp).
+template <typename T>
+struct TermConstants {
+  T two_delta{};
+  T two_delta_wall{};  ///< 0 where nothing is diffused between fluid and walls
+  T viscosity_alpha{}, viscosity_epsilon{1}, viscosity_beta{};
+  T friction_alpha{}, friction_epsilon{1};
+  T two_nu{};
+  T wall_two_nu_by_speed{};
+  T gravity_x{}, gravity_y{};
+  T tile_size{};  ///< in h
+};
+
+/// One chunk of clusters i against the clusters j of its lists.
+template <typename T>
+struct SweepTask {
+  PairView<T> self;                           ///< the set of i
+  PairView<T> fluid;                          ///< j of `to_fluid`
+  PairView<T> wall;                           ///< j of `to_wall`
+  const PairList::Chunk* to_fluid = nullptr;  ///< mutual, but not for the wall pressure
+  const PairList::Chunk* to_wall = nullptr;   ///< null without walls
+  std::size_t first_cluster = 0;
+  std::size_t clusters = 0;
+  const TermConstants<T>* constants = nullptr;
+  T* sums = nullptr;  ///< out: per place of `to_fluid`, before their common scale (SumBlocks); for
+                      ///< the wall pressure one value per slot
+};
+
+/// A cluster i, by its box, whose possible neighbours among the clusters j are wanted.
+struct SearchTask {
+  /// Clusters j of a strip; those before `next` are near neither i nor a later cluster of its
+  /// strip.
+  struct Row {
+    std::uint32_t next = 0;
+    std::uint32_t end = 0;
+  };
+  BoxesView boxes;                       ///< of the clusters j
+  float left{}, right{}, low{}, high{};  ///< of cluster i, with the cut-off, h
+  float left_after{};                    ///< least `left` from cluster i on
+  std::uint32_t first = 0;               ///< clusters j before it are left out
+  std::span<Row> rows;                   ///< of the strips near i; `next` is moved on
+  std::uint32_t* out = nullptr;          ///< entries; room for all clusters of the rows and kTail
+};
+
+/// A cluster i whose list of possible neighbours among the clusters j is wanted.
+template <typename T>
+struct PruneTask {
+  TracksView<T> self, other;
+  T cut_off{};  ///< support in h
+  T tile_size{};
+  std::size_t cluster = 0;
+  const std::uint32_t* candidates = nullptr;  ///< entries to test, in order
+  std::size_t count = 0;
+  std::uint32_t* out = nullptr;  ///< room for `count` entries
+};
+
+/// The loops over pairs for the terms of one method on one SIMD target, chosen once per run.
+template <typename T>
+struct Sweeps {
+  using Sweep = void (*)(const SweepTask<T>&);
+
+  Sweep density_and_acceleration = nullptr;  ///< eqs. 4, 5, 7, 8 in one sweep
+  Sweep density = nullptr;                   ///< eqs. 4, 7
+  Sweep density_and_shift = nullptr;         ///< eqs. 4, 7, and the sums of particle shifting
+  Sweep acceleration = nullptr;              ///< eqs. 5, 8, viscous stress
+  Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
+  Sweep reinitialise = nullptr;              ///< eq. 10
+  /// The clusters whose boxes meet that of cluster i, as entries of the same tile; returns how
+  /// many.
+  std::size_t (*search)(const SearchTask&) = nullptr;
+  /// Keeps the candidates of which a particle may come within the cut-off of one of cluster i while
+  /// both stay within the leeway of their tracks.
+  std::size_t (*prune)(const PruneTask<T>&) = nullptr;
+  Updates<T> updates;       ///< the loops over particles that go with them
+  std::string_view target;  ///< name of the SIMD target
+};
+
+/// Throws std::invalid_argument when `target` is neither empty nor one that this machine runs,
+/// naming those it does.
+template <typename T>
+[[nodiscard]] Sweeps<T> select_sweeps(const Method& method, const std::string& target);
+
+template <>
+Sweeps<float> select_sweeps<float>(const Method&, const std::string&);
+template <>
+Sweeps<double> select_sweeps<double>(const Method&, const std::string&);
+
+}  // namespace sluice

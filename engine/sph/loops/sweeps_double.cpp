@@ -1,0 +1,30 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/sph/loops/sweeps_double.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target.h
+#include "engine/sph/loops/sweeps-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sluice::HWY_NAMESPACE {
+
+void fill_double(const Method& method, Sweeps<double>& out) { fill(method, out); }
+
+}  // namespace sluice::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "engine/sph/loops/simd_target.hpp"
+
+namespace sluice {
+
+HWY_EXPORT(fill_double);
+
+template <>
+Sweeps<double> select_sweeps<double>(const Method& method, const std::string& target) {
+  Sweeps<double> sweeps;
+  with_simd_target(target, [&] { HWY_DYNAMIC_DISPATCH(fill_double)(method, sweeps); });
+  return sweeps;
+}
+
+}  // namespace sluice
+#endif

@@ -1,0 +1,30 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/sph/loops/sweeps_float.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target.h
+#include "engine/sph/loops/sweeps-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sluice::HWY_NAMESPACE {
+
+void fill_float(const Method& method, Sweeps<float>& out) { fill(method, out); }
+
+}  // namespace sluice::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "engine/sph/loops/simd_target.hpp"
+
+namespace sluice {
+
+HWY_EXPORT(fill_float);
+
+template <>
+Sweeps<float> select_sweeps<float>(const Method& method, const std::string& target) {
+  Sweeps<float> sweeps;
+  with_simd_target(target, [&] { HWY_DYNAMIC_DISPATCH(fill_float)(method, sweeps); });
+  return sweeps;
+}
+
+}  // namespace sluice
+#endif

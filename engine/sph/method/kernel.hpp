@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/sph/method/method.hpp"
+
+namespace sluice {
+
+/// Smoothing functions in two dimensions, dimensionless: W = value(R^2) / h^2 and grad W_ij =
+/// -slope(R^2) x_ij / h^4, both zero beyond `support` smoothing lengths. The pair sums use vector
+/// versions of the same shapes.
+struct TruncatedGaussian {
+  static constexpr double support = 3.0;
+  static constexpr double value_scale = std::numbers::inv_pi;
+  static constexpr double slope_scale = 2.0 * std::numbers::inv_pi;
+
+  /// eq. 6. Cut, not renormalised: the integral over the plane is 1 - e^-9.
+  [[nodiscard]] static double value(double r_sq) {
+    return r_sq < support * support ? value_scale * std::exp(-r_sq) : 0.0;
+  }
+  [[nodiscard]] static double slope(double r_sq) { return 2.0 * value(r_sq); }
+};
+
+/// Wendland C2 (Wendland 1995), normalised for the plane.
+struct WendlandC2 {
+  static constexpr double support = 2.0;
+  static constexpr double value_scale = 7.0 / 4.0 * std::numbers::inv_pi;
+  static constexpr double slope_scale = 35.0 / 4.0 * std::numbers::inv_pi;
+
+  [[nodiscard]] static double value(double r_sq) {
+    const double r = std::sqrt(r_sq);
+    const double rest = std::max(1.0 - 0.5 * r, 0.0);
+    return value_scale * rest * rest * rest * rest * (2.0 * r + 1.0);
+  }
+  [[nodiscard]] static double slope(double r_sq) {
+    const double rest = std::max(1.0 - 0.5 * std::sqrt(r_sq), 0.0);
+    return slope_scale * rest * rest * rest;
+  }
+};
+
+/// value(R^2) of the kernel that a method names.
+[[nodiscard]] inline double kernel_value(KernelKind kind, double r_sq) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value(r_sq)
+                                                : WendlandC2::value(r_sq);
+}
+
+/// slope(R^2) of the kernel that a method names.
+[[nodiscard]] inline double kernel_slope(KernelKind kind, double r_sq) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope(r_sq)
+                                                : WendlandC2::slope(r_sq);
+}
+
+/// The constant of value(R^2).
+[[nodiscard]] inline double kernel_value_scale(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value_scale
+                                                : WendlandC2::value_scale;
+}
+
+/// The constant of slope(R^2).
+[[nodiscard]] inline double kernel_slope_scale(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope_scale
+                                                : WendlandC2::slope_scale;
+}
+
+}  // namespace sluice

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/space/vec.hpp"
+#include "engine/sph/method/method.hpp"
+
+namespace sluice {
+
+/// Fluid particles, structure of arrays. The order of the particles is part of the state: sums run
+/// in it. A field that the scheme does not need stays empty; all others have `size()` entries.
+struct Particles {
+  std::vector<double> x, y;                 ///< position, m
+  std::vector<double> vx, vy;               ///< velocity, m/s
+  std::vector<double> density_excess;       ///< rho - rho_0, kg/m^3
+  std::vector<double> vx_half, vy_half;     ///< velocity half a step earlier, m/s
+  std::vector<double> density_excess_half;  ///< rho - rho_0 half a step earlier, kg/m^3
+  std::vector<double> ax, ay;               ///< acceleration, m/s^2
+  std::vector<double> x_sorted, y_sorted;   ///< position at the last sort, m
+  std::vector<double> id;                   ///< number given at the start; whole, 0 ... N-1
+
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] Vec position(std::size_t i) const { return {x[i], y[i]}; }
+  [[nodiscard]] Vec velocity(std::size_t i) const { return {vx[i], vy[i]}; }
+};
+
+enum class Role {
+  state,    ///< needed to go on exactly
+  derived,  ///< follows from the state; written for readers only
+};
+
+/// Which schemes carry a field.
+enum class CarriedBy { every_scheme, modified_leap_frog, kick_drift_kick };
+
+struct Field {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+  Role role;
+  CarriedBy carried_by;
+  std::vector<double> Particles::*member;
+};
+
+/// The one list of fields: memory, reordering, checkpoint, frames and comparison all go by it.
+// clang-format off
+inline constexpr std::array kFields{
+    Field{"x", "m", "position, horizontal", Role::state, CarriedBy::every_scheme, &Particles::x},
+    Field{"y", "m", "position, vertical", Role::state, CarriedBy::every_scheme, &Particles::y},
+    Field{"vx", "m/s", "velocity, horizontal", Role::state, CarriedBy::every_scheme, &Particles::vx},
+    Field{"vy", "m/s", "velocity, vertical", Role::state, CarriedBy::every_scheme, &Particles::vy},
+    Field{"density_excess", "kg/m^3", "density less the reference density", Role::state, CarriedBy::every_scheme, &Particles::density_excess},
+    Field{"vx_half", "m/s", "velocity half a step earlier, horizontal", Role::state, CarriedBy::modified_leap_frog, &Particles::vx_half},
+    Field{"vy_half", "m/s", "velocity half a step earlier, vertical", Role::state, CarriedBy::modified_leap_frog, &Particles::vy_half},
+    Field{"density_excess_half", "kg/m^3", "density less the reference density, half a step earlier", Role::state, CarriedBy::modified_leap_frog, &Particles::density_excess_half},
+    Field{"ax", "m/s^2", "acceleration, horizontal", Role::state, CarriedBy::kick_drift_kick, &Particles::ax},
+    Field{"ay", "m/s^2", "acceleration, vertical", Role::state, CarriedBy::kick_drift_kick, &Particles::ay},
+    Field{"x_sorted", "m", "position at the last sort, horizontal", Role::state, CarriedBy::every_scheme, &Particles::x_sorted},
+    Field{"y_sorted", "m", "position at the last sort, vertical", Role::state, CarriedBy::every_scheme, &Particles::y_sorted},
+    Field{"id", "1", "number given at the start", Role::state, CarriedBy::every_scheme, &Particles::id},
+};
+// clang-format on
+
+/// Whether particles of this integrator carry the field.
+[[nodiscard]] constexpr bool carries(Integrator integrator, const Field& field) {
+  switch (field.carried_by) {
+    case CarriedBy::every_scheme:
+      return true;
+    case CarriedBy::modified_leap_frog:
+      return integrator == Integrator::modified_leap_frog;
+    case CarriedBy::kick_drift_kick:
+      return integrator == Integrator::kick_drift_kick;
+  }
+  return false;
+}
+
+/// Why a particle left the sums: where it went, or, from not_finite on, because it became what the
+/// scheme cannot hold, and was excluded.
+enum class RetireCause {
+  overtopped,  ///< over the rim of an open tank
+  leaked,      ///< into or through a solid, or over the edge of the domain
+  not_finite,  ///< a place, velocity or density that is no number
+  too_fast,    ///< than sound
+  too_dense,   ///< rho/rho_0 above 1 + Method::kDensityLeeway
+  too_thin,    ///< rho/rho_0 below 1 - Method::kDensityLeeway
+};
+inline constexpr std::size_t kRetireCauses = 6;
+[[nodiscard]] constexpr bool is_exclusion(RetireCause cause) {
+  return cause >= RetireCause::not_finite;
+}
+[[nodiscard]] std::string_view to_string(RetireCause cause);
+
+/// A particle that left the sums, as it was then. What was not finite is 0, a place that of the
+/// last sort. Velocities and densities are 0 in what builds before the exclusion wrote.
+struct Retired {
+  double id = 0;
+  RetireCause cause = RetireCause::leaked;
+  std::uint64_t step = 0;
+  double time = 0.0;            ///< s
+  double x = 0.0;               ///< m
+  double y = 0.0;               ///< m
+  double vx = 0.0;              ///< m/s
+  double vy = 0.0;              ///< m/s
+  double density_excess = 0.0;  ///< kg/m^3
+};
+
+/// Everything the solver needs to go on as if it had never stopped.
+struct SolverState {
+  Particles particles;
+  std::uint64_t step = 0;
+  double time = 0.0;       ///< model time t^n, s
+  double time_step = 0.0;  ///< length of the step that led here, s; 0 before the first
+  std::vector<Retired> retired;
+};
+
+/// Of the fluid, J per metre of depth: kinetic m v^2/2, potential -m f . x, and internal
+/// m c^2 (ln(rho/rho_0) + rho_0/rho - 1), the integral of p/rho^2 of the linear equation of state.
+struct Energy {
+  double kinetic = 0.0;
+  double potential = 0.0;
+  double internal = 0.0;
+
+  [[nodiscard]] double total() const { return kinetic + potential + internal; }
+  void merge(const Energy& other) {
+    kinetic += other.kinetic;
+    potential += other.potential;
+    internal += other.internal;
+  }
+};
+
+}  // namespace sluice

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "engine/sph/method/method.hpp"
+#include "engine/sph/method/particles.hpp"
+
+namespace sluice {
+
+/// Why the particle in a slot is no part of the fluid any more at time t, if so: it is what the
+/// scheme cannot hold, or where the run does not go on, or in a solid.
+[[nodiscard]] std::optional<RetireCause> cause_to_retire(const Method& method,
+                                                         const Particles& particles,
+                                                         std::size_t slot, double time);
+
+/// What is kept of the particle. Of what is not finite: the place at the last sort, or zero.
+[[nodiscard]] Retired record_of(const Particles& particles, std::size_t slot, RetireCause cause,
+                                std::uint64_t step, double time);
+
+/// Energy that a particle took along, J/m.
+[[nodiscard]] Energy energy_of(const Method& method, const Retired& retired);
+
+/// All that particles of one kind took along when they left the sums.
+struct Departed {
+  std::size_t count = 0;
+  double mass = 0.0;           ///< kg/m
+  Vec momentum = Vec::Zero();  ///< kg/s
+  Energy energy;
+
+  void add(const Method& method, const Retired& retired);
+  void merge(const Departed& other);
+};
+
+}  // namespace sluice

@@ -1,0 +1,106 @@
+#include "engine/sph/solver/dummy_particles.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sluice {
+
+template <typename T>
+DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Method& method,
+                                  const std::vector<Vec>& places)
+    : count_(places.size()) {
+  if (places.empty()) return;
+  std::vector<double> x(count_);
+  std::vector<double> y(count_);
+  std::vector<double> id(count_);
+  for (std::size_t i = 0; i < count_; ++i) {
+    x[i] = places[i].x();
+    y[i] = places[i].y();
+    id[i] = static_cast<double>(i);
+  }
+  Order order = sort_into_clusters(team, grid, x, y, id);
+  layout_ = std::move(order.layout);
+  source_ = std::move(order.source);
+  const std::size_t slots = layout_.slots();
+  arrays_.resize(slots);
+  excess_.resize(slots);
+  std::vector<double> slot_x(slots, 0.0);
+  std::vector<double> slot_y(slots, 0.0);
+  std::vector<double> slot_id(slots, -1.0);
+  for (std::size_t s = 0; s < slots; ++s) {
+    const std::uint32_t i = source_[s];
+    if (i == Order::kEmpty) continue;
+    slot_x[s] = x[i];
+    slot_y[s] = y[i];
+    slot_id[s] = id[i];
+    if (method.lifted_wall && method.lifted_wall->place.contains(places[i])) {
+      lifted_.push_back({places[i], s});
+    }
+  }
+  bounds_.assign_tiles(team, grid, layout_, slot_x.data(), slot_y.data(), slot_id.data());
+  // Empty slots lie on the other side than those of the fluid.
+  const double h = method.smoothing_length;
+  for (std::size_t s = 0; s < slots; ++s) {
+    const bool used = slot_id[s] >= 0.0;
+    const Vec origin = grid.tile_center(bounds_.tile[s / kCluster]);
+    arrays_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : -nowhere(s));
+    arrays_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : -nowhere(s));
+    arrays_.volume[s] = T{1};
+  }
+  bounds_.resize(layout_);
+  bounds_.assign_boxes(0, layout_.clusters(), grid, h, set().tracks);
+  bounds_.assign_strips(team, layout_);
+}
+
+template <typename T>
+void DummyParticles<T>::sum_pressures(ThreadTeam& team, const Method& method,
+                                      const Sweeps<T>& sweeps, const TermConstants<T>& constants,
+                                      const PairView<T>& fluid, const PairList& list) {
+  team.run(list.chunks.size(), [&](std::size_t chunk) {
+    SweepTask<T> task;
+    task.self = view();
+    task.fluid = fluid;
+    task.to_fluid = &list.chunks[chunk];
+    task.first_cluster = layout_.chunk_begin(chunk);
+    task.clusters = layout_.chunk_begin(chunk + 1) - task.first_cluster;
+    task.constants = &constants;
+    task.sums = excess_.data();
+    sweeps.wall_pressure(task);
+    const std::size_t begin = kCluster * task.first_cluster;
+    for (std::size_t s = begin; s < begin + kCluster * task.clusters; ++s) {
+      T excess = excess_[s];
+      if (method.wall_pressure == WallPressure::clamped) excess = std::max(excess, T{0});
+      const T volume = T{1} / (T{1} + excess);
+      arrays_.excess[s] = excess;
+      arrays_.volume[s] = volume;
+      arrays_.stress[s] = excess * volume * volume;
+    }
+  });
+}
+
+template <typename T>
+void DummyParticles<T>::lift(const Method& method, double time) {
+  std::erase_if(lifted_, [&](const LiftedParticle& p) {
+    if (!method.lifted_wall->has_passed(p.place, time)) return false;
+    arrays_.x[p.slot] = arrays_.y[p.slot] = static_cast<T>(-nowhere(p.slot));
+    arrays_.excess[p.slot] = arrays_.stress[p.slot] = T{0};
+    arrays_.volume[p.slot] = T{1};
+    return true;
+  });
+}
+
+template <typename T>
+std::vector<double> DummyParticles<T>::pressures(const Method& method) const {
+  std::vector<double> result(count_, 0.0);
+  const double scale = method.reference_density * method.sound_speed * method.sound_speed;
+  for (std::size_t s = 0; s < layout_.slots(); ++s) {
+    if (source_[s] == Order::kEmpty) continue;
+    result[source_[s]] = static_cast<double>(arrays_.excess[s]) * scale;
+  }
+  return result;
+}
+
+template class DummyParticles<float>;
+template class DummyParticles<double>;
+
+}  // namespace sluice

@@ -1,0 +1,117 @@
+#include "engine/sph/solver/machine_speed.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/sph/solver/solver.hpp"
+
+namespace sluice {
+namespace {
+
+// Large enough that what a step costs beside its particles is a small part, as it is in a run.
+constexpr int kColumns = 96;
+constexpr int kRows = 32;
+constexpr int kLayers = 3;
+constexpr int kParts = 3;  // the fastest counts: the others were disturbed
+constexpr double kPartSeconds = 0.008;
+// What a run in motion takes beside steps of particles at rest: sorts, longer lists, samples.
+constexpr double kMotion = 1.3;
+constexpr std::size_t kKept = 32;
+
+double processor_seconds() {
+  std::timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// The choices that the cost of a step depends on.
+std::array<double, 12> cost_of(const Method& m) {
+  return {static_cast<double>(m.kernel),
+          static_cast<double>(m.integrator),
+          static_cast<double>(m.precision),
+          m.smoothing_length / m.spacing,
+          m.diffusion ? 1.0 + static_cast<double>(m.diffusion->kind) : 0.0,
+          m.viscosity.has_value() ? 1.0 : 0.0,
+          m.viscosity && m.viscosity->beta > 0.0 ? 1.0 : 0.0,
+          m.wall_friction.has_value() ? 1.0 : 0.0,
+          m.physical_viscosity.has_value() ? 1.0 : 0.0,
+          m.wall_drag.has_value() ? 1.0 : 0.0,
+          m.shifting.has_value() ? 1.0 : 0.0,
+          m.reinitialisation ? m.reinitialisation->interval : 0.0};
+}
+
+/// The same scheme for particles one unit apart, at rest without gravity.
+Method unit_method(const Method& wanted) {
+  Method m = wanted;
+  m.smoothing_length = wanted.smoothing_length / wanted.spacing;
+  m.spacing = m.sound_speed = m.reference_density = 1.0;
+  m.gravity = Vec::Zero();
+  if (m.physical_viscosity) m.physical_viscosity->nu = 1e-3;
+  m.lifted_wall.reset();
+  m.wall_top.reset();
+  m.domain = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
+  return m;
+}
+
+Solver small_tank(const Method& method, std::string_view simd) {
+  SolverState state;
+  std::vector<Vec> walls;
+  Particles& p = state.particles;
+  for (int row = -kLayers; row < kRows; ++row) {
+    for (int column = -kLayers; column < kColumns + kLayers; ++column) {
+      const Vec place(column + 0.5, row + 0.5);
+      if (row < 0 || column < 0 || column >= kColumns) {
+        walls.push_back(place);
+        continue;
+      }
+      p.id.push_back(static_cast<double>(p.size()));
+      p.x.push_back(place.x());
+      p.y.push_back(place.y());
+      p.vx.push_back(0.0);
+      p.vy.push_back(0.0);
+      p.density_excess.push_back(0.0);
+    }
+  }
+  return {method, state, walls, {1, std::string(simd)}};
+}
+
+double measure(const Method& method, std::string_view simd) {
+  Solver solver = small_tank(unit_method(method), simd);
+  solver.step();  // sorts and allocates
+  double best = 0.0;
+  for (int part = 0; part < kParts; ++part) {
+    const double start = processor_seconds();
+    double steps = 0.0;
+    double seconds = 0.0;
+    while (seconds < kPartSeconds) {
+      solver.step();
+      ++steps;
+      seconds = processor_seconds() - start;
+    }
+    best = std::max(best, steps * kColumns * kRows / seconds);
+  }
+  return best / kMotion;
+}
+
+}  // namespace
+
+double particle_steps_per_core_second(const Method& method, std::string_view simd) {
+  using Known = std::pair<std::pair<std::array<double, 12>, std::string>, double>;
+  static std::mutex mutex;
+  static std::vector<Known> known;
+  const std::pair cost{cost_of(method), std::string(simd)};
+  const std::scoped_lock lock(mutex);
+  const auto found = std::ranges::find(known, cost, &Known::first);
+  if (found != known.end()) return found->second;
+  const double speed = measure(method, simd);
+  if (known.size() == kKept) known.clear();
+  known.emplace_back(cost, speed);
+  return speed;
+}
+
+}  // namespace sluice

@@ -1,0 +1,403 @@
+#include "engine/store/files/job_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <system_error>
+
+#include "engine/store/disk/apart.hpp"
+#include "engine/store/disk/errors.hpp"
+#include "engine/store/disk/publish.hpp"
+#include "engine/store/files/frame_io.hpp"
+
+namespace sluice {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBadSuffix = ".bad";
+constexpr const char* kHere = ".";
+/// Far above any scene that the parser takes.
+constexpr std::uint64_t kLargestScene = std::uint64_t{1} << 24;
+
+/// Paths in a folder whose names `wanted` accepts, sorted by name; none where there is no folder.
+template <class Wanted>
+std::vector<fs::path> list(const fs::path& folder, const Wanted& wanted) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : entries_of(folder)) {
+    if (wanted(entry.path().filename().string())) {
+      found.push_back(entry.path());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+bool is_checkpoint_name(std::string_view name) { return step_of_checkpoint_name(name).has_value(); }
+
+std::uint64_t step_of(const fs::path& path) {
+  return step_of_checkpoint_name(path.filename().string()).value_or(0);
+}
+
+// --- the lock
+
+FileDescriptor open_lock(const fs::path& path) {
+  FileDescriptor descriptor(uninterrupted([&] {
+    return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  }));
+  if (descriptor.get() >= 0) {
+    return descriptor;
+  }
+  if (errno == ELOOP || errno == EISDIR || errno == ENXIO) {
+    throw StorageError(StorageFault::not_ours,
+                       fmt::format("{}: the lock file is a link or no regular file; this is no "
+                                   "folder of ours, or remove that file",
+                                   path.string()));
+  }
+  throw system_error("cannot open the lock file", path, errno);
+}
+
+/// Several names for one lock file would lock jobs that have nothing to do with each other.
+void require_plain_file(const FileDescriptor& descriptor, const fs::path& path) {
+  struct stat status {};
+  if (::fstat(descriptor.get(), &status) != 0) {
+    throw system_error("cannot look at the lock file", path, errno);
+  }
+  if (!S_ISREG(status.st_mode) || status.st_nlink > 1) {
+    throw StorageError(StorageFault::not_ours,
+                       fmt::format("{}: the lock file is no regular file of one name; this is no "
+                                   "folder of ours, or remove that file",
+                                   path.string()));
+  }
+}
+
+/// Throws StorageError where the system cannot tell: that is no answer.
+bool is_still_at(int descriptor, const fs::path& path) {
+  struct stat held {};
+  struct stat named {};
+  if (::fstat(descriptor, &held) != 0) {
+    throw system_error("cannot look at", path, errno);
+  }
+  if (::lstat(path.c_str(), &named) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR) return false;
+    throw system_error("cannot look at", path, errno);
+  }
+  return held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
+/// What the holder wrote into the lock file, for the message; it is not what locks.
+std::string holder(const FileDescriptor& descriptor) {
+  std::array<char, 32> text{};
+  const ssize_t count = ::pread(descriptor.get(), text.data(), text.size(), 0);
+  long process = 0;
+  const auto length = static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+  const auto result = std::from_chars(text.data(), text.data() + length, process);
+  return result.ec == std::errc() ? fmt::format("process {}", process) : "another process";
+}
+
+void lock_or_throw(const FileDescriptor& descriptor, const fs::path& path) {
+  const int result = uninterrupted([&] { return ::flock(descriptor.get(), LOCK_EX | LOCK_NB); });
+  if (result != 0 && errno == EWOULDBLOCK) {
+    throw StorageError(StorageFault::locked,
+                       fmt::format("{}: this job is being run by {}; wait for it or stop it first",
+                                   path.parent_path().string(), holder(descriptor)));
+  }
+  if (result != 0) {
+    throw system_error("cannot lock", path, errno);
+  }
+}
+
+/// Only for messages: the lock holds even when the disk is too full for a number.
+void write_holder(const FileDescriptor& descriptor) {
+  const std::string text = fmt::format("{}\n", ::getpid());
+  if (::ftruncate(descriptor.get(), 0) == 0) {
+    [[maybe_unused]] const ssize_t count = ::pwrite(descriptor.get(), text.data(), text.size(), 0);
+  }
+}
+
+FileDescriptor take_lock(const fs::path& path) {
+  while (true) {
+    FileDescriptor descriptor = open_lock(path);
+    require_plain_file(descriptor, path);
+    lock_or_throw(descriptor, path);
+    // Someone may have removed the file between opening and locking: then nobody else sees this
+    // lock.
+    if (is_still_at(descriptor.get(), path)) {
+      write_holder(descriptor);
+      return descriptor;
+    }
+  }
+}
+
+// --- making and opening
+
+fs::path absolute_or_same(const fs::path& path) {
+  std::error_code error;
+  fs::path absolute = fs::absolute(path, error);
+  return error ? path : absolute;
+}
+
+void require_writable(const fs::path& folder) {
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw system_error("cannot write in this folder", folder, errno);
+  }
+}
+
+/// Of a folder without a scene.
+std::string what_it_lacks(const JobPaths& paths) {
+  const auto checkpoints = paths.checkpoints();
+  if (checkpoints.empty()) {
+    return "this is no job folder: there is no scene.json in it; make one by running a scene file";
+  }
+  return fmt::format(
+      "scene.json is missing, while {} is there: put the scene of this run back as "
+      "scene.json, and it goes on",
+      checkpoints.front().filename().string());
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (std::error_code ignored; error && !fs::is_directory(folder, ignored)) {
+    throw system_error("cannot make the folder", folder, error.value());
+  }
+}
+
+/// An empty folder, or one in which the making of a job was cut short.
+void require_free_folder(const fs::path& folder) {
+  if (JobFolder::holds_job(folder)) {
+    throw StorageError(
+        StorageFault::already_exists,
+        fmt::format("{}: holds a job already; go on with it by its folder, or choose "
+                    "another one",
+                    folder.string()));
+  }
+  const std::vector<fs::path> others =
+      list(folder, [](std::string_view name) { return name != "lock"; });
+  if (!others.empty()) {
+    throw StorageError(
+        StorageFault::not_ours,
+        fmt::format("{}: not empty (it holds '{}') and no job; choose another folder",
+                    folder.string(), others.front().filename().string()));
+  }
+}
+
+/// Which older checkpoint stays besides the two newest: the oldest from half of the newest's steps
+/// on, so that it lies well back and yet moves on; else the youngest there is. `older` is sorted
+/// newest first.
+const fs::path& older_to_keep(const std::vector<fs::path>& older, std::uint64_t newest_step) {
+  const auto too_old = std::find_if(older.begin(), older.end(), [&](const fs::path& path) {
+    return step_of(path) < newest_step - newest_step / 2;
+  });
+  return too_old == older.begin() ? older.front() : *std::prev(too_old);
+}
+
+}  // namespace
+
+fs::path JobPaths::frame(std::uint64_t index) const { return frames() / frame_name(index); }
+
+fs::path JobPaths::checkpoint(std::uint64_t step) const { return root_ / checkpoint_name(step); }
+
+std::vector<fs::path> JobPaths::checkpoints() const {
+  std::vector<fs::path> found = list(root_, is_checkpoint_name);
+  std::reverse(found.begin(), found.end());
+  return found;
+}
+
+std::vector<fs::path> JobPaths::bad_checkpoints() const {
+  return list(root_, [](std::string_view name) {
+    return name.ends_with(kBadSuffix) &&
+           is_checkpoint_name(name.substr(0, name.size() - kBadSuffix.size()));
+  });
+}
+
+std::vector<fs::path> JobPaths::frame_files() const {
+  return list(frames(), [](std::string_view name) {
+    return name.starts_with("frame-") && name.ends_with(".h5");
+  });
+}
+
+FolderLock::FolderLock(const fs::path& path) : descriptor_(take_lock(path)) {}
+
+FolderLock::~FolderLock() {
+  // While it is locked: afterwards the number may be the next holder's.
+  if (descriptor_.get() < 0) return;
+  [[maybe_unused]] const int result = ::ftruncate(descriptor_.get(), 0);
+}
+
+bool FolderLock::is_at(const fs::path& path) const { return is_still_at(descriptor_.get(), path); }
+
+JobFolder::JobFolder(JobPaths paths, FileSystem& system)
+    : name_(paths.root()),
+      absolute_(absolute_or_same(name_)),
+      paths_(std::move(paths)),
+      lock_(paths_.lock()),
+      system_(&system) {
+  remove_leftovers();
+}
+
+void JobFolder::remove_leftovers() const {
+  sluice::remove_leftovers(paths_.root());
+  sluice::remove_leftovers(paths_.frames());
+}
+
+JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
+                            FileSystem& system) {
+  make_folder(folder);
+  require_writable(folder);
+  // Before the lock, so that no lock file is left in a folder of someone else.
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(JobPaths(folder).lock(), ignored))) {
+    require_free_folder(folder);
+  }
+  JobFolder job(JobPaths(folder), system);
+  require_free_folder(folder);
+  job.publish_text(job.paths_.scene(), scene_text);
+  storing([&] { fs::create_directory(job.paths_.frames()); });
+  return job;
+}
+
+JobFolder JobFolder::open(const fs::path& folder, FileSystem& system) {
+  if (!holds_job(folder)) {
+    throw StorageError(StorageFault::not_ours,
+                       fmt::format("{}: {}", folder.string(), what_it_lacks(JobPaths(folder))));
+  }
+  require_writable(folder);
+  return {JobPaths(folder), system};
+}
+
+bool JobFolder::holds_job(const fs::path& folder) {
+  return file_type_at(JobPaths(folder).scene()) == fs::file_type::regular;
+}
+
+fs::path JobFolder::name() const {
+  std::error_code error;
+  if (fs::equivalent(absolute_, paths_.root(), error)) return name_;
+  const fs::path now = fs::canonical(paths_.root(), error);
+  return error ? name_ : now;
+}
+
+void JobFolder::enter() {
+  if (paths_.root() == kHere) return;
+  if (::chdir(paths_.root().c_str()) != 0) {
+    throw system_error("cannot enter the folder", paths_.root(), errno);
+  }
+  paths_ = JobPaths(kHere);
+  require_held();
+}
+
+bool JobFolder::is_held() const {
+  try {
+    return lock_.is_at(paths_.lock());
+  } catch (const StorageError&) {
+    return true;
+  }
+}
+
+void JobFolder::require_held() const {
+  if (lock_.is_at(paths_.lock())) return;
+  throw StorageError(
+      StorageFault::lost,
+      fmt::format("{}: this folder or the lock file in it was removed or replaced while the job "
+                  "ran; nothing more is written there. A copy of the folder goes on from its "
+                  "newest checkpoint",
+                  name_.string()));
+}
+
+std::string JobFolder::scene_text() const { return read_text(paths_.scene(), kLargestScene); }
+
+std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectation) {
+  std::vector<std::string> rejected;
+  for (const fs::path& path : paths_.checkpoints()) {
+    try {
+      Checkpoint checkpoint =
+          read_harmless(path, [&] { return read_checkpoint(path, expectation); });
+      if (checkpoint.solver.step != step_of(path)) {
+        throw StorageError(StorageFault::corrupt,
+                           fmt::format("{}: holds step {}", path.string(), checkpoint.solver.step));
+      }
+      verified_.insert(path);
+      return Restored{std::move(checkpoint), path, std::move(rejected)};
+    } catch (const StorageError& error) {
+      if (error.fault() != StorageFault::corrupt && error.fault() != StorageFault::not_ours) {
+        throw;
+      }
+      put_aside(path);
+      rejected.push_back(told_outside(name(), std::string(error.what())));
+    }
+  }
+  const std::vector<fs::path> bad = paths_.bad_checkpoints();
+  if (bad.empty()) {
+    return std::nullopt;
+  }
+  throw StorageError(
+      StorageFault::no_usable_checkpoint,
+      fmt::format("{}: none of its {} checkpoints can be used{}{}; they are kept with the ending "
+                  "'{}'. To begin again from the scene, remove them",
+                  name().string(), bad.size(), rejected.empty() ? "" : ": ",
+                  fmt::join(rejected, "; "), kBadSuffix));
+}
+
+fs::path JobFolder::write_checkpoint(const Checkpoint& checkpoint) {
+  require_held();
+  fs::path path = sluice::write_checkpoint(paths_.root(), checkpoint, *system_);
+  verified_.insert(path);
+  return path;
+}
+
+std::vector<fs::path> JobFolder::prune() {
+  std::vector<fs::path> good = paths_.checkpoints();
+  std::erase_if(good, [this](const fs::path& path) { return !is_verified(path); });
+  if (good.size() <= 3) {
+    return {};
+  }
+  const std::vector<fs::path> older(good.begin() + 2, good.end());
+  const fs::path& kept = older_to_keep(older, step_of(good.front()));
+  std::vector<fs::path> removed;
+  for (const fs::path& path : older) {
+    std::error_code ignored;  // One that cannot be removed is only tried again next time
+    if (path != kept && fs::remove(path, ignored)) {
+      verified_.erase(path);
+      removed.push_back(path);
+    }
+  }
+  return removed;
+}
+
+void JobFolder::publish_text(const fs::path& path, std::string_view text) {
+  require_held();
+  sluice::publish_text(path, text, *system_);
+}
+
+void JobFolder::put_aside(const fs::path& path) {
+  const fs::path aside = path.string() + std::string(kBadSuffix);
+  verified_.erase(path);
+  if (system_->rename(path, aside) != 0) {
+    throw system_error("cannot rename this damaged checkpoint", path, errno);
+  }
+}
+
+bool JobFolder::is_verified(const fs::path& path) {
+  if (verified_.contains(path)) {
+    return true;
+  }
+  try {
+    verify(path);
+  } catch (const StorageError& error) {
+    if (error.fault() == StorageFault::corrupt) {
+      put_aside(path);
+    }
+    return false;
+  }
+  verified_.insert(path);
+  return true;
+}
+
+}  // namespace sluice

@@ -1,0 +1,323 @@
+#include "engine/store/files/layout.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <type_traits>
+
+#include "engine/store/disk/errors.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr std::string_view kLeapFrog = "modified_leap_frog";
+constexpr std::string_view kKickDriftKick = "kick_drift_kick";
+constexpr const char* kCauses =
+    "0 overtopped, 1 leaked; excluded: 2 not finite, 3 too fast, 4 too dense, 5 too thin";
+
+[[noreturn]] void throw_corrupt(const std::string& message) {
+  throw StorageError(StorageFault::corrupt, message);
+}
+
+// Values that the file holds in another form than memory does.
+
+std::string to_file(Integrator integrator) {
+  return std::string(integrator == Integrator::modified_leap_frog ? kLeapFrog : kKickDriftKick);
+}
+std::uint64_t to_file(bool flag) { return flag ? 1 : 0; }
+double to_file(double value) { return value; }
+std::uint64_t to_file(std::uint64_t value) { return value; }
+std::uint64_t to_file(RetireCause cause) { return static_cast<std::uint64_t>(cause); }
+
+void from_file(const std::string& text, Integrator& integrator) {
+  if (text != kLeapFrog && text != kKickDriftKick) {
+    throw_corrupt(fmt::format("attribute 'integrator' of / is '{}', which is no integrator", text));
+  }
+  integrator = text == kLeapFrog ? Integrator::modified_leap_frog : Integrator::kick_drift_kick;
+}
+void from_file(std::uint64_t number, bool& flag) {
+  if (number > 1) {
+    throw_corrupt(fmt::format("{} where 0 or 1 is expected", number));
+  }
+  flag = number == 1;
+}
+void from_file(double number, double& value) { value = number; }
+void from_file(std::uint64_t number, std::uint64_t& value) { value = number; }
+void from_file(std::uint64_t number, RetireCause& cause) {
+  if (number >= kRetireCauses) {
+    throw_corrupt(fmt::format("data set /retired/cause holds {}, which is no cause", number));
+  }
+  cause = static_cast<RetireCause>(number);
+}
+
+/// An attribute that is converted on its way.
+template <class Archive, class Value>
+void converted(Archive& archive, const std::string& name, Value& value) {
+  auto stored = to_file(value);
+  archive.attribute("/", name, stored);
+  if constexpr (Archive::kReads) {
+    from_file(stored, value);
+  }
+}
+
+template <class Archive, class Subject>
+void identity(Archive& archive, Subject& checkpoint) {
+  archive.attribute("/", "scene_hash", checkpoint.scene_hash);
+  archive.attribute("/", "build", checkpoint.build);
+  archive.attribute("/", "simd_target", checkpoint.simd_target);
+  converted(archive, "bit_exact", checkpoint.bit_exact);
+  converted(archive, "integrator", checkpoint.integrator);
+}
+
+/// The fields of kFields that particles of this integrator carry.
+template <class Archive, class Subject>
+void particle_fields(Archive& archive, Integrator integrator, Subject& particles) {
+  archive.group("/particles");
+  archive.count("/particles", "count", particles.x);
+  const Extents shape{particles.size()};
+  for (const Field& field : kFields) {
+    if (carries(integrator, field)) {
+      archive.data_set("/particles/" + std::string(field.name), particles.*field.member, shape,
+                       {std::string(field.unit), std::string(field.description)});
+    }
+  }
+}
+
+/// One member of all retired particles as a data set.
+template <class Archive, class List, class Member>
+void retired_column(Archive& archive, const std::string& name, List& list, Member Retired::*member,
+                    const Label& label) {
+  std::vector<decltype(to_file(Member{}))> column;
+  column.reserve(list.size());
+  for (const Retired& retired : list) {
+    column.push_back(to_file(retired.*member));
+  }
+  archive.data_set("/retired/" + name, column, Extents{list.size()}, label);
+  if constexpr (Archive::kReads) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      from_file(column[i], list[i].*member);
+    }
+  }
+}
+
+template <class Archive, class Subject>
+void retired_particles(Archive& archive, Subject& list, RetiredLayout layout) {
+  archive.group("/retired");
+  archive.count("/retired", "count", list);
+  retired_column(archive, "id", list, &Retired::id, {"1", "number given at the start"});
+  retired_column(archive, "cause", list, &Retired::cause, {"1", kCauses});
+  retired_column(archive, "step", list, &Retired::step, {"1", "step at which it left the sums"});
+  retired_column(archive, "time", list, &Retired::time, {"s", "time at which it left the sums"});
+  retired_column(archive, "x", list, &Retired::x, {"m", "last position, horizontal"});
+  retired_column(archive, "y", list, &Retired::y, {"m", "last position, vertical"});
+  if (layout == RetiredLayout::places) return;
+  retired_column(archive, "vx", list, &Retired::vx, {"m/s", "last velocity, horizontal"});
+  retired_column(archive, "vy", list, &Retired::vy, {"m/s", "last velocity, vertical"});
+  retired_column(archive, "density_excess", list, &Retired::density_excess,
+                 {"kg/m^3", "last density less the reference density"});
+}
+
+/// Names and units of the columns; the caller's list is as long as the file's afterwards.
+template <class Archive, class Subject>
+void columns(Archive& archive, const std::string& path, Subject& list) {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+  for (const Series::Column& column : list) {
+    names.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  archive.attribute(path, "columns", names);
+  archive.attribute(path, "units", units);
+  if constexpr (Archive::kReads) {
+    if (names.size() != units.size()) {
+      throw_corrupt(
+          fmt::format("{} has {} columns and {} units", path, names.size(), units.size()));
+    }
+    list.resize(names.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      list[i] = {names[i], units[i]};
+    }
+  }
+}
+
+std::string joined_units(const std::vector<Series::Column>& list) {
+  std::string text;
+  for (const Series::Column& column : list) {
+    text += (text.empty() ? "" : ", ") + column.unit;
+  }
+  return text;
+}
+
+template <class Archive, class Subject>
+void sample_table(Archive& archive, const std::string& path, Subject& table) {
+  archive.group(path);
+  archive.attribute(path, "kind", table.kind);
+  archive.attribute(path, "names", table.names);
+  columns(archive, path, table.columns);
+  archive.attribute(path, "next_index", table.next_index);
+  archive.count(path, "count", table.time);
+  const std::uint64_t samples = table.size();
+  const std::uint64_t sensors = table.sensors();
+  archive.data_set(path + "/place", table.places, {sensors},
+                   {"1", "places of the sensors in the scene's list, from 0 on"});
+  archive.data_set(path + "/time", table.time, {samples}, {"s", "time of the sample"});
+  archive.data_set(path + "/duration", table.duration, {samples},
+                   {"s", "time since the sample before"});
+  archive.data_set(path + "/values", table.values, {samples, sensors, table.columns.size()},
+                   {joined_units(table.columns), "by sample, sensor and column; NaN: dry"});
+  archive.data_set(path + "/weight", table.weight, {samples, sensors},
+                   {"1", "kernel weight that carried the value; 0: dry"});
+}
+
+/// Numbered groups and not named ones: a name may hold what a path cannot.
+std::string table_path(std::size_t index) { return fmt::format("/series/{:04}", index); }
+
+template <class Archive, class Subject>
+void sample_tables(Archive& archive, Subject& tables) {
+  archive.group("/series");
+  archive.count("/series", "count", tables);
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    sample_table(archive, table_path(i), tables[i]);
+  }
+}
+
+/// As the first versions kept them: a table for each sensor.
+void samples_by_sensor(ReadArchive& archive, std::vector<SampleTable>& tables) {
+  archive.group("/series");
+  archive.count("/series", "count", tables);
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    SampleTable& table = tables[i];
+    const std::string path = table_path(i);
+    archive.group(path);
+    table.names.resize(1);
+    table.places = {i};
+    archive.attribute(path, "name", table.names.front());
+    archive.attribute(path, "kind", table.kind);
+    columns(archive, path, table.columns);
+    archive.attribute(path, "next_index", table.next_index);
+    archive.count(path, "count", table.time);
+    const std::uint64_t samples = table.size();
+    archive.data_set(path + "/time", table.time, {samples}, {"s", {}});
+    archive.data_set(path + "/duration", table.duration, {samples}, {"s", {}});
+    archive.data_set(path + "/values", table.values, {samples, table.columns.size()},
+                     {joined_units(table.columns), {}});
+    archive.data_set(path + "/weight", table.weight, {samples}, {"1", {}});
+  }
+}
+
+template <class Archive, class Subject>
+void samples(Archive& archive, Subject& tables, SampleLayout layout) {
+  if constexpr (Archive::kReads) {
+    if (layout == SampleLayout::by_sensor) return samples_by_sensor(archive, tables);
+  }
+  sample_tables(archive, tables);
+}
+
+template <class Archive, class Subject>
+void guard_baselines(Archive& archive, Subject& guards) {
+  archive.group("/guards");
+  for (const GuardNumber& number : kGuardNumbers) {
+    archive.attribute("/guards", std::string(number.name), guards.*number.member);
+  }
+}
+
+template <class Archive, class Subject>
+void physics(Archive& archive, Subject& checkpoint, const CheckpointLayout& layout = {}) {
+  archive.attribute("/", "step", checkpoint.solver.step);
+  archive.attribute("/", "time", checkpoint.solver.time);
+  archive.attribute("/", "time_step", checkpoint.solver.time_step);
+  archive.attribute("/", "next_frame", checkpoint.next_frame);
+  particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
+  retired_particles(archive, checkpoint.solver.retired, layout.retired);
+  samples(archive, checkpoint.samples, layout.samples);
+  guard_baselines(archive, checkpoint.guards);
+}
+
+struct FrameField {
+  std::string_view name, unit, description;
+  std::vector<float> Frame::*member;
+};
+constexpr std::array kFrameFields{
+    FrameField{"x", "m", "position from the origin, horizontal", &Frame::x},
+    FrameField{"y", "m", "position from the origin, vertical", &Frame::y},
+    FrameField{"vx", "m/s", "velocity, horizontal", &Frame::vx},
+    FrameField{"vy", "m/s", "velocity, vertical", &Frame::vy},
+    FrameField{"pressure", "Pa", "pressure, eq. 3", &Frame::pressure},
+};
+
+template <class Archive, class Subject>
+void frame_layout(Archive& archive, Subject& frame, std::uint64_t version) {
+  archive.attribute("/", "step", frame.step);
+  archive.attribute("/", "time", frame.time);
+  if (version > 1) {
+    archive.attribute("/", "origin_x", frame.origin_x);
+    archive.attribute("/", "origin_y", frame.origin_y);
+  }
+  archive.group("/particles");
+  archive.count("/particles", "count", frame.x);
+  const Extents shape{frame.x.size()};
+  for (const FrameField& field : kFrameFields) {
+    archive.data_set("/particles/" + std::string(field.name), frame.*field.member, shape,
+                     {std::string(field.unit), std::string(field.description)});
+  }
+  archive.data_set("/particles/id", frame.id, shape, {"1", "number given at the start"});
+}
+
+}  // namespace
+
+void walk_format(WriteArchive& archive, const Format& format) {
+  archive.attribute("/", "format", std::string(format.name));
+  archive.attribute("/", "version", format.version);
+}
+
+std::uint64_t walk_format(ReadArchive& archive, const Format& format) {
+  std::string name;
+  std::uint64_t version = 0;
+  archive.attribute("/", "format", name);
+  archive.attribute("/", "version", version);
+  if (name != format.name) {
+    throw StorageError(StorageFault::not_ours,
+                       fmt::format("the format is '{}' where '{}' is expected", name, format.name));
+  }
+  if (version < format.oldest || version > format.version) {
+    throw StorageError(StorageFault::unsupported_version,
+                       fmt::format("version {} of the format {}, this program knows {} to {}; use "
+                                   "the program that wrote it",
+                                   version, name, format.oldest, format.version));
+  }
+  return version;
+}
+
+void walk_identity(WriteArchive& archive, const Checkpoint& checkpoint) {
+  identity(archive, checkpoint);
+}
+void walk_identity(ReadArchive& archive, Checkpoint& checkpoint) { identity(archive, checkpoint); }
+
+void walk_physics(WriteArchive& archive, const Checkpoint& checkpoint) {
+  physics(archive, checkpoint);
+}
+void walk_physics(ReadArchive& archive, Checkpoint& checkpoint, const CheckpointLayout& layout) {
+  physics(archive, checkpoint, layout);
+}
+void walk_physics(DigestArchive& archive, const Checkpoint& checkpoint) {
+  physics(archive, checkpoint);
+}
+
+void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables) {
+  sample_tables(archive, tables);
+}
+void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables, SampleLayout layout) {
+  samples(archive, tables, layout);
+}
+void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables) {
+  sample_tables(archive, tables);
+}
+
+void walk_frame(WriteArchive& archive, const Frame& frame) {
+  frame_layout(archive, frame, kFrameFormat.version);
+}
+void walk_frame(ReadArchive& archive, Frame& frame, std::uint64_t version) {
+  frame_layout(archive, frame, version);
+}
+
+}  // namespace sluice

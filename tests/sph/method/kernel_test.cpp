@@ -1,0 +1,82 @@
+#include "engine/sph/method/kernel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace sluice {
+namespace {
+
+/// Integral over the plane, by the midpoint rule in R: 2 pi R W dR.
+template <class Kernel>
+double plane_integral() {
+  constexpr int kSlices = 200000;
+  const double width = Kernel::support / kSlices;
+  double sum = 0.0;
+  for (int k = 0; k < kSlices; ++k) {
+    const double r = (k + 0.5) * width;
+    sum += 2.0 * std::numbers::pi * r * Kernel::value(r * r) * width;
+  }
+  return sum;
+}
+
+/// slope is -W'(R)/R; central differences of step e have an error of e^2 W'''/6.
+template <class Kernel>
+void expect_slope_is_the_derivative() {
+  constexpr double e = 1e-4;
+  for (double r = 0.05; r < Kernel::support - 0.01; r += 0.05) {
+    const double below = Kernel::value((r - e) * (r - e));
+    const double above = Kernel::value((r + e) * (r + e));
+    EXPECT_NEAR(Kernel::slope(r * r), -(above - below) / (2.0 * e) / r, 1e-6) << "R = " << r;
+  }
+}
+
+TEST(Kernels, TheTruncatedGaussianIntegratesToOneLessWhatIsCutOff) {
+  EXPECT_NEAR(plane_integral<TruncatedGaussian>(), 1.0 - std::exp(-9.0), 1e-10);
+}
+
+TEST(Kernels, WendlandC2IntegratesToOne) { EXPECT_NEAR(plane_integral<WendlandC2>(), 1.0, 1e-10); }
+
+TEST(Kernels, TheSlopeIsTheDerivativeOfTheValue) {
+  expect_slope_is_the_derivative<TruncatedGaussian>();
+  expect_slope_is_the_derivative<WendlandC2>();
+}
+
+TEST(Kernels, TheSlopeIsFiniteAtTheCentre) {
+  // Limits of -W'(R)/R for R -> 0.
+  EXPECT_NEAR(TruncatedGaussian::slope(0.0), 2.0 / std::numbers::pi, 1e-15);
+  EXPECT_NEAR(WendlandC2::slope(0.0), 35.0 / (4.0 * std::numbers::pi), 1e-14);
+}
+
+TEST(Kernels, ValueAndSlopeAreZeroFromTheSupportOn) {
+  for (const double r : {3.0, 3.0001, 4.0, 1e3, 1e150}) {
+    EXPECT_EQ(TruncatedGaussian::value(r * r), 0.0) << r;
+    EXPECT_EQ(TruncatedGaussian::slope(r * r), 0.0) << r;
+  }
+  for (const double r : {2.0, 2.0001, 3.0, 1e3, 1e50}) {
+    EXPECT_EQ(WendlandC2::value(r * r), 0.0) << r;
+    EXPECT_EQ(WendlandC2::slope(r * r), 0.0) << r;
+  }
+  EXPECT_GT(TruncatedGaussian::value(2.999 * 2.999), 0.0);
+  EXPECT_GT(WendlandC2::value(1.99 * 1.99), 0.0);
+}
+
+TEST(Kernels, TheMethodsKernelIsTheOneItNames) {
+  for (const double r_sq : {0.0, 0.3, 2.0, 5.0, 10.0}) {
+    EXPECT_EQ(kernel_value(KernelKind::truncated_gaussian, r_sq), TruncatedGaussian::value(r_sq));
+    EXPECT_EQ(kernel_value(KernelKind::wendland_c2, r_sq), WendlandC2::value(r_sq));
+  }
+}
+
+TEST(Kernels, TheMethodsSupportIsWhereItsKernelEnds) {
+  Method m;
+  m.smoothing_length = 0.5;
+  m.kernel = KernelKind::truncated_gaussian;
+  EXPECT_DOUBLE_EQ(m.support(), TruncatedGaussian::support * 0.5);
+  m.kernel = KernelKind::wendland_c2;
+  EXPECT_DOUBLE_EQ(m.support(), WendlandC2::support * 0.5);
+}
+
+}  // namespace
+}  // namespace sluice

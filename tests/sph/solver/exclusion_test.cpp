@@ -1,0 +1,254 @@
+// Particles that became what the scheme cannot hold: out of all sums at once, and booked.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/sph/loops/simd_target.hpp"
+#include "engine/sph/method/retired.hpp"
+#include "tests/sph/test_fluids.hpp"
+
+namespace sluice {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kBad = 44;
+
+Method method_of(Integrator integrator, Precision precision) {
+  Method m = full_method();
+  m.integrator = integrator;
+  m.precision = precision;
+  return m;
+}
+
+Fluid block() {
+  Dice dice(91);
+  return random_block(dice, {-0.5, -0.5}, 10, 10, 0.1, 0.1, 0.5, 10.0);
+}
+
+/// The state without one particle.
+SolverState without(SolverState state, std::size_t index) {
+  for (const Field& field : kFields) {
+    std::vector<double>& values = state.particles.*field.member;
+    if (!values.empty()) values.erase(values.begin() + static_cast<std::ptrdiff_t>(index));
+  }
+  return state;
+}
+
+struct Fault {
+  std::vector<double> Particles::*field;
+  double value;
+  RetireCause cause;
+};
+const Fault kFaults[] = {
+    {&Particles::density_excess, 301.0, RetireCause::too_dense},
+    {&Particles::density_excess, -301.0, RetireCause::too_thin},
+    {&Particles::vx, 20.1, RetireCause::too_fast},
+    {&Particles::vy, -1e200, RetireCause::too_fast},
+    {&Particles::x, kNan, RetireCause::not_finite},
+    {&Particles::y, -kInfinity, RetireCause::not_finite},
+    {&Particles::vx, kNan, RetireCause::not_finite},
+    {&Particles::density_excess, kInfinity, RetireCause::not_finite},
+};
+
+TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
+  for (const Integrator integrator : kIntegrators) {
+    for (const Precision precision : kPrecisions) {
+      const Method m = method_of(integrator, precision);
+      const SolverState good = start_from(block());
+      Solver expected(m, without(good, kBad), {}, {});
+      run_steps(expected, 40);
+      for (const Fault& fault : kFaults) {
+        SolverState bad = good;
+        (bad.particles.*fault.field)[kBad] = fault.value;
+        Solver solver(m, bad, {}, {});
+        ASSERT_EQ(solver.retired().size(), 1U);
+        EXPECT_EQ(solver.retired()[0].id, static_cast<double>(kBad));
+        EXPECT_EQ(solver.retired()[0].cause, fault.cause) << fault.value;
+        EXPECT_EQ(solver.particle_count(), 99U);
+        run_steps(solver, 40);
+        SolverState seen = solver.state();
+        EXPECT_EQ(seen.retired.size(), 1U);
+        seen.retired.clear();
+        expect_same_bits(seen, expected.state(), std::string(to_string(fault.cause)));
+      }
+    }
+  }
+}
+
+/// A state under way in which one particle has just gone wrong: what its half steps make of it is
+/// wrong at the end of the next step.
+SolverState gone_wrong(const Method& m, std::size_t steps) {
+  Solver solver(m, start_from(block()), {}, {});
+  while (solver.step_count() < steps) solver.step();
+  SolverState state = solver.state();
+  Particles& p = state.particles;
+  for (std::vector<double> Particles::*field :
+       {&Particles::density_excess, &Particles::density_excess_half}) {
+    if (!(p.*field).empty()) (p.*field)[kBad] = 299.0;
+  }
+  for (std::vector<double> Particles::*field : {&Particles::vx, &Particles::vx_half}) {
+    if (!(p.*field).empty()) (p.*field)[kBad] = 19.5;
+  }
+  return state;
+}
+
+TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
+  for (const Integrator integrator : kIntegrators) {
+    for (const Precision precision : kPrecisions) {
+      const Method m = method_of(integrator, precision);
+      const SolverState start = gone_wrong(m, 7);
+      for (const std::string& target : simd_targets()) {
+        Solver whole(m, start, {}, {1, target});
+        run_steps(whole, 60);
+        ASSERT_GT(whole.retired().size(), 0U) << "nobody excluded: this test proves nothing";
+        EXPECT_LT(whole.retired().size(), 20U);
+        EXPECT_TRUE(is_exclusion(whole.retired()[0].cause));
+        const std::uint64_t at = whole.retired()[0].step;
+        EXPECT_GT(at, 7U) << "excluded when it was loaded";
+        for (const std::uint64_t stop : {at - 1, at, at + 1}) {
+          for (const int threads : {2, 3, 8}) {
+            Solver first(m, start, {}, {threads, target});
+            while (first.step_count() < stop) first.step();
+            Solver second(m, first.state(), {}, {1, target});
+            EXPECT_EQ(second.extremes().max_speed, first.extremes().max_speed);
+            EXPECT_EQ(second.extremes().max_density_excess, first.extremes().max_density_excess);
+            EXPECT_EQ(second.extremes().max_x, first.extremes().max_x);
+            while (second.step_count() < whole.step_count()) second.step();
+            expect_same_bits(second.state(), whole.state(), target);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Exclusion, TakesTheExtremesOfTheOthers) {
+  for (const Integrator integrator : kIntegrators) {
+    const Method m = method_of(integrator, Precision::double_precision);
+    Solver solver(m, gone_wrong(m, 7), {}, {});
+    const auto bound = [&] {
+      return solver.extremes().max_speed <= m.sound_speed &&
+             std::abs(solver.extremes().max_density_excess) <= m.most_density_excess();
+    };
+    for (int n = 0; n < 60; ++n) {
+      solver.step();
+      EXPECT_TRUE(bound()) << "step " << solver.step_count();
+      EXPECT_GE(solver.time_step(), m.least_time_step());
+      const SolverState state = solver.state();
+      double fastest = 0.0;
+      for (std::size_t i = 0; i < state.particles.size(); ++i) {
+        fastest = std::max(fastest, state.particles.velocity(i).norm());
+      }
+      EXPECT_DOUBLE_EQ(solver.extremes().max_speed, fastest);
+    }
+    EXPECT_GT(solver.retired().size(), 0U);
+  }
+}
+
+TEST(Exclusion, DoesNotShortenTheStepForAParticleThatIsThrownAbout) {
+  // 0.25 sqrt(h/a) would be a thousandth of h/c.
+  for (const Integrator integrator : kIntegrators) {
+    Method m = plain_method();
+    m.integrator = integrator;
+    m.gravity = {0.0, -6.25e4 * m.sound_speed * m.sound_speed / m.smoothing_length};
+    Fluid fluid;
+    fluid.add({0.0, 0.0});
+    Solver solver(m, start_from(fluid), {}, {});
+    run_steps(solver, 2);
+    EXPECT_DOUBLE_EQ(m.least_time_step(), 0.05 * m.smoothing_length / m.sound_speed);
+    EXPECT_EQ(solver.particle_count(), 0U);
+    ASSERT_EQ(solver.retired().size(), 1U);
+    EXPECT_EQ(solver.retired()[0].cause, RetireCause::too_fast);
+  }
+}
+
+TEST(Exclusion, BooksMassMomentumAndEnergy) {
+  Method m = plain_method();
+  m.gravity = {2.0, -3.0};
+  SolverState state = start_from(block());
+  Particles& p = state.particles;
+  p.density_excess[kBad] = 400.0;
+  p.vx[kBad] = 3.0;
+  p.vy[kBad] = -4.0;
+  const Vec place = p.position(kBad);
+  const Solver solver(m, state, {}, {});
+  ASSERT_EQ(solver.retired().size(), 1U);
+  Departed departed;
+  departed.add(m, solver.retired()[0]);
+  const double mass = 1000.0 * 0.1 * 0.1;
+  EXPECT_EQ(departed.count, 1U);
+  EXPECT_DOUBLE_EQ(departed.mass, mass);
+  EXPECT_DOUBLE_EQ(departed.momentum.x(), 3.0 * mass);
+  EXPECT_DOUBLE_EQ(departed.momentum.y(), -4.0 * mass);
+  EXPECT_DOUBLE_EQ(departed.energy.kinetic, 12.5 * mass);
+  EXPECT_DOUBLE_EQ(departed.energy.potential, -mass * (2.0 * place.x() - 3.0 * place.y()));
+  // c^2 (ln 1.4 + 1/1.4 - 1)
+  EXPECT_NEAR(departed.energy.internal, mass * 400.0 * (std::log(1.4) + 1.0 / 1.4 - 1.0), 1e-9);
+}
+
+TEST(Exclusion, KeepsNoNumberThatIsNone) {
+  SolverState state = start_from(block());
+  state.particles.x[kBad] = kNan;
+  state.particles.vx[kBad] = kInfinity;
+  state.particles.density_excess[kBad] = kNan;
+  const Solver solver(plain_method(), state, {}, {});
+  ASSERT_EQ(solver.retired().size(), 1U);
+  Departed departed;
+  departed.add(plain_method(), solver.retired()[0]);
+  EXPECT_TRUE(std::isfinite(departed.energy.total()));
+  EXPECT_TRUE(departed.momentum.allFinite());
+}
+
+TEST(Solids, TakeWhoIsDeepInThemForALeakWithinFourCrossings) {
+  for (const Integrator integrator : kIntegrators) {
+    Method m = plain_method();
+    m.integrator = integrator;
+    m.in_solid = [](const Vec& place, double) { return place.x() > 0.5; };
+    Fluid fluid;
+    fluid.add({0.0, 0.0}, {10.0, 0.0});
+    fluid.add({-1.0, 0.0}, {-1.0, 0.0});
+    Solver solver(m, start_from(fluid), {}, {});
+    while (solver.retired().empty() && solver.step_count() < 200) solver.step();
+    ASSERT_EQ(solver.retired().size(), 1U);
+    EXPECT_EQ(solver.retired()[0].id, 0.0);
+    EXPECT_EQ(solver.retired()[0].cause, RetireCause::leaked);
+    EXPECT_GT(solver.retired()[0].x, 0.5);
+    EXPECT_LE(solver.retired()[0].x, 0.5 + 10.0 * 4.0 * 0.1 / 20.0);
+  }
+}
+
+TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
+  Method m = plain_method();
+  m.room = {{-1.0, -1.0}, {1.0, kInfinity}};
+  m.wall_top = 0.5;
+  m.walls_reach = 0.4;
+  m.rim_left = -1.2;
+  m.rim_right = 1.2;
+  EXPECT_TRUE(m.keeps({0.0, 0.0}));
+  EXPECT_FALSE(m.keeps({1.1, 0.0}));
+  EXPECT_FALSE(m.keeps({0.0, -1.1}));
+  EXPECT_TRUE(m.keeps({1.1, 0.6})) << "over the wall, before its middle";
+  EXPECT_TRUE(m.keeps({1.1, 0.45})) << "it lies on the wall";
+  EXPECT_FALSE(m.keeps({1.3, 0.6}));
+  EXPECT_FALSE(m.keeps({1.3, 0.45})) << "it has run over the wall";
+  for (const Integrator integrator : kIntegrators) {
+    m.integrator = integrator;
+    Fluid fluid;
+    for (const Vec& place :
+         {Vec(0.0, 0.0), Vec(1.1, 0.0), Vec(0.0, -1.1), Vec(1.1, 0.6), Vec(1.3, 0.45)}) {
+      fluid.add(place);
+    }
+    Solver solver(m, start_from(fluid), {}, {});
+    ASSERT_EQ(solver.retired().size(), 3U);
+    for (const Retired& each : solver.retired()) {
+      EXPECT_EQ(each.cause, each.id == 4.0 ? RetireCause::overtopped : RetireCause::leaked);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sluice
