@@ -164,9 +164,17 @@ def check_folders(files):
             yield f"{name}: is not a known top-level name"
 
 
+def check_rooms(files):
+    """Every source of a folder with rooms is in one of them."""
+    for path in files:
+        module = module_of(path)
+        if module in FLOORS and path.endswith(SOURCE_SUFFIXES) and not floor_of(path):
+            yield f"{path}: is in no room of {module}"
+
+
 def violations(root):
     files = files_of(root)
-    return [*check_includes(root, files), *check_paths(root, files), *check_folders(files)]
+    return [*check_includes(root, files), *check_paths(root, files), *check_folders(files), *check_rooms(files)]
 
 
 def main():

@@ -14,12 +14,12 @@ GOOD = {
     "engine/scene/README.md": "",
     "engine/scene/model/scene.cpp": '#include "engine/sph/method/kernel.hpp"\n',
     "engine/store/README.md": "",
-    "engine/store/file.hpp": "#pragma once\n#include <hdf5.h>\n",
-    "engine/store/file.cpp": '#include "engine/store/file.hpp"\n#include <hdf5.h>\n',
+    "engine/store/disk/file.hpp": "#pragma once\n#include <hdf5.h>\n",
+    "engine/store/disk/file.cpp": '#include "engine/store/disk/file.hpp"\n#include <hdf5.h>\n',
     "service/README.md": "",
-    "service/api/api.cpp": '#include "engine/store/file.hpp"\n#include "sluice/version.hpp"\n',
+    "service/api/api.cpp": '#include "engine/store/disk/file.hpp"\n#include "sluice/version.hpp"\n',
     "cli/README.md": "",
-    "cli/main.cpp": '#include "engine/store/file.hpp"\n',
+    "cli/main.cpp": '#include "engine/store/disk/file.hpp"\n',
 }
 
 
@@ -47,32 +47,43 @@ class CheckTree(unittest.TestCase):
         self.assertEqual(self.found_in(GOOD), [])
 
     def test_an_include_against_the_direction_is_found(self):
-        found = self.with_file("engine/sph/x.cpp", '#include "engine/store/file.hpp"\n')
+        found = self.with_file("engine/sph/method/x.cpp", '#include "engine/store/disk/file.hpp"\n')
         self.assert_one(found, "engine/sph may not include from engine/store")
 
     def test_an_include_with_blanks_in_it_is_found_too(self):
-        found = self.with_file("engine/sph/x.cpp", ' #  include "engine/store/file.hpp"\n')
+        found = self.with_file("engine/sph/method/x.cpp", ' #  include "engine/store/disk/file.hpp"\n')
         self.assert_one(found, "engine/sph may not include from engine/store")
+
+    def test_a_room_may_include_from_the_floors_below_it_alone(self):
+        files = {"engine/scene/model/scene.hpp": "#pragma once\n", "engine/scene/checks/parse.hpp": "#pragma once\n"}
+        down = '#include "engine/scene/model/scene.hpp"\n'
+        up = '#include "engine/scene/checks/parse.hpp"\n'
+        self.assertEqual(self.found_in({**GOOD, **files, "engine/scene/checks/parse.cpp": down}), [])
+        self.assert_one(self.found_in({**GOOD, **files, "engine/scene/model/scene.cpp": up}),
+                        "engine/scene/model may not include from engine/scene/checks")
+
+    def test_a_source_beside_the_rooms_is_found(self):
+        self.assert_one(self.found_in({**GOOD, "engine/scene/stray.cpp": "\n"}), "is in no room of engine/scene")
 
     def test_the_service_may_include_studies_and_the_store_may_not(self):
         files = {"engine/study/README.md": "", "engine/study/study.hpp": "#pragma once\n"}
         line = '#include "engine/study/study.hpp"\n'
-        self.assertEqual(self.found_in({**GOOD, **files, "service/studies.cpp": line}), [])
-        self.assert_one(self.found_in({**GOOD, **files, "engine/store/x.cpp": line}),
-                        "engine/store may not include from engine/ladder")
+        self.assertEqual(self.found_in({**GOOD, **files, "service/api/studies.cpp": line}), [])
+        self.assert_one(self.found_in({**GOOD, **files, "engine/store/disk/x.cpp": line}),
+                        "engine/store may not include from engine/study")
 
     def test_the_service_may_not_include_the_run(self):
         files = {"engine/run/README.md": "", "engine/run/run.hpp": "#pragma once\n",
-                 "service/worker.cpp": '#include "engine/run/run.hpp"\n'}
+                 "service/worker/worker.cpp": '#include "engine/run/run.hpp"\n'}
         self.assert_one(self.found_in({**GOOD, **files}), "service may not include from engine/run")
 
     def test_hdf5_in_a_second_pair_of_files_is_found(self):
-        for name in ("engine/store/other.cpp", "tests/store/raw.cpp"):
+        for name in ("engine/store/disk/other.cpp", "tests/store/raw.cpp"):
             found = self.found_in({**GOOD, name: "#include <hdf5.h>\n", "tests/README.md": ""})
             self.assert_one(found, "hdf5.h: included by more pairs of files than 1")
 
     def test_httplib_belongs_to_one_pair_of_the_service_and_one_of_the_command_line(self):
-        both = {"service/response.cpp": "#include <httplib.h>\n",
+        both = {"service/http/response.cpp": "#include <httplib.h>\n",
                 "cli/client.cpp": "#include <httplib.h>\n"}
         self.assertEqual(self.found_in({**GOOD, **both}), [])
         third = {**GOOD, **both, "engine/store/fetch.cpp": "#include <httplib.h>\n"}
@@ -82,15 +93,15 @@ class CheckTree(unittest.TestCase):
 
     def test_the_method_may_not_use_files_json_or_logging(self):
         for header in ("fstream", "nlohmann/json.hpp", "fmt/format.h"):
-            found = self.with_file("engine/sph/x.cpp", f"#include <{header}>\n")
+            found = self.with_file("engine/sph/method/x.cpp", f"#include <{header}>\n")
             self.assert_one(found, f"engine/sph may not include {header}")
 
     def test_an_include_that_is_not_from_the_root_is_found(self):
-        found = self.with_file("engine/sph/x.cpp", '#include "kernel.hpp"\n')
+        found = self.with_file("engine/sph/method/x.cpp", '#include "kernel.hpp"\n')
         self.assert_one(found, "not a path from the root")
 
     def test_an_include_of_a_missing_file_is_found(self):
-        found = self.with_file("engine/sph/x.cpp", '#include "engine/sph/none.hpp"\n')
+        found = self.with_file("engine/sph/method/x.cpp", '#include "engine/sph/none.hpp"\n')
         self.assert_one(found, "does not exist")
 
     def test_a_path_of_a_machine_is_found(self):
