@@ -86,7 +86,7 @@ class CheckTree(unittest.TestCase):
         both = {"service/http/response.cpp": "#include <httplib.h>\n",
                 "cli/client.cpp": "#include <httplib.h>\n"}
         self.assertEqual(self.found_in({**GOOD, **both}), [])
-        third = {**GOOD, **both, "engine/store/fetch.cpp": "#include <httplib.h>\n"}
+        third = {**GOOD, **both, "engine/store/disk/fetch.cpp": "#include <httplib.h>\n"}
         self.assert_one(self.found_in(third), "httplib.h: included by more pairs of files than 2")
         same = {**GOOD, "cli/a.cpp": "#include <httplib.h>\n", "cli/b.cpp": "#include <httplib.h>\n"}
         self.assert_one(self.found_in(same), "two pairs of files of one folder")
