@@ -44,7 +44,7 @@ displaced() {
   python3 - "schemas/examples/$scene.json" "$seed" "$end" >"$job.json" <<'END'
 import json, sys
 scene = json.load(open(sys.argv[1], encoding="utf-8"))
-scene["jitter"] = {"amplitude": 1e-4, "seed": int(sys.argv[2])}
+scene["perturbation"] = {"amplitude": 1e-4, "seed": int(sys.argv[2])}
 scene["end_time"] = float(sys.argv[3])
 scene.pop("output", None)
 json.dump(scene, sys.stdout)

@@ -168,12 +168,12 @@ std::string scheme_text(const Scene& scene) {
   if (method.viscosity && method.viscosity->beta > 0.0) {
     text += fmt::format(", beta {:g}", method.viscosity->beta);
   }
-  if (method.wall_friction) {
-    text += fmt::format(", wall friction alpha {:g}", method.wall_friction->alpha);
-  } else if (method.physical_viscosity) {
-    text += fmt::format(", nu {:g} m^2/s and no slip", method.physical_viscosity->nu);
-  } else if (method.wall_drag) {
-    text += fmt::format(", wall drag Cf {:g}", method.wall_drag->coefficient);
+  if (method.wall_artificial_viscosity) {
+    text += fmt::format(", wall friction alpha {:g}", method.wall_artificial_viscosity->alpha);
+  } else if (method.laminar_viscosity) {
+    text += fmt::format(", nu {:g} m^2/s and no slip", method.laminar_viscosity->nu);
+  } else if (method.wall_shear) {
+    text += fmt::format(", wall drag Cf {:g}", method.wall_shear->coefficient);
   } else if (scene.tank || !scene.obstacles.empty()) {
     text += ", free slip";
   }

@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "engine/scene/format/former_words.hpp"
 #include "engine/scene/format/json_text.hpp"
 #include "engine/scene/format/numerics_json.hpp"
 #include "engine/scene/format/reader.hpp"
@@ -15,6 +16,15 @@
 namespace sluice {
 
 using nlohmann::json;
+
+namespace {
+
+constexpr FormerWord kFormerStudyWords[] = {
+    {"/repeats/jitter", "/repeats/perturbation"},
+    {"/repeats", "/members"},
+};
+
+}  // namespace
 
 template <class Archive>
 void describe(Archive& a, StudyCase& one) {
@@ -43,10 +53,10 @@ void describe(Archive& a, StudyAxis& axis) {
 }
 
 template <class Archive>
-void describe(Archive& a, StudyRepeats& repeats) {
-  a.integer("count", repeats.count,
+void describe(Archive& a, StudyMembers& members) {
+  a.integer("count", members.count,
             {.about = "runs of each set-up", .range = from(1, 100), .need = Need::required});
-  a.number("jitter", repeats.jitter,
+  a.number("perturbation", members.perturbation,
            {.about = "largest displacement of a particle at the start, in spacings; each run has "
                      "its own seed",
             .range = above(0, 0.5)});
@@ -66,7 +76,7 @@ void describe(Archive& a, Study& study) {
   a.list(
       "vary", study.vary,
       {.about = "keys that every case is run with each value of; several make a grid", .max = 6});
-  a.section("repeats", study.repeats,
+  a.section("members", study.members,
             {.about = "an ensemble of each set-up", .otherwise = "one run of each"});
   a.integer("threads", study.threads, {.about = "threads of each run", .range = from(1, 1024)});
   a.numbers("targets", study.targets,
@@ -182,7 +192,7 @@ class Planner {
  private:
   void change(json& scene, const std::string& key, const json& value, const std::string& pointer) {
     try {
-      apply(scene, key, value);
+      apply(scene, present_pointer(key, kFormerSceneWords), value);
     } catch (const std::exception& error) {
       problems_.add(pointer, fmt::format("cannot set {} in the scene: {}", key, error.what()));
     }
@@ -191,7 +201,7 @@ class Planner {
   /// The grid, axis by axis.
   void walk(const json& scene, const StudyRun& run, std::size_t axis) {
     if (full_) return;
-    if (axis == plan_.study.vary.size()) return repeat(scene, run);
+    if (axis == plan_.study.vary.size()) return make_members(scene, run);
     const StudyAxis& varied = plan_.study.vary[axis];
     for (std::size_t k = 0; k < varied.values.size(); ++k) {
       const json& value = varied.values[k];
@@ -204,12 +214,12 @@ class Planner {
     }
   }
 
-  void repeat(const json& scene, const StudyRun& run) {
-    if (!plan_.study.repeats) return finish(scene, run, "");
-    for (int k = 1; k <= plan_.study.repeats->count && !full_; ++k) {
-      json displaced = scene;
-      displaced["jitter"] = {{"amplitude", plan_.study.repeats->jitter}, {"seed", k}};
-      finish(displaced, run, fmt::format("-r{}", k));
+  void make_members(const json& scene, const StudyRun& run) {
+    if (!plan_.study.members) return finish(scene, run, "");
+    for (int k = 1; k <= plan_.study.members->count && !full_; ++k) {
+      json member = scene;
+      member["perturbation"] = {{"amplitude", plan_.study.members->perturbation}, {"seed", k}};
+      finish(member, run, fmt::format("-r{}", k));
     }
   }
 
@@ -269,7 +279,7 @@ void check_values(const Study& study, std::size_t most, Problems& problems) {
   // Before any run is made: a short text can ask for more than any machine holds.
   double runs = static_cast<double>(std::max<std::size_t>(study.cases.size(), 1));
   for (const StudyAxis& axis : study.vary) runs *= static_cast<double>(axis.values.size());
-  if (study.repeats) runs *= study.repeats->count;
+  if (study.members) runs *= study.members->count;
   if (runs > static_cast<double>(most)) {
     problems.add("",
                  fmt::format("makes {:.6g} runs, more than {}; study less at once", runs, most));
@@ -282,10 +292,21 @@ struct SceneFiles {
   const void* context;
 };
 
+/// What a case or an axis sets has present names, or gets them: so has its base.
+json with_present_words(json scene, const std::string& pointer, const std::string& where,
+                        Problems& problems) {
+  Problems inner;
+  use_present_words(scene, kFormerSceneWords, inner);
+  for (const Problem& problem : inner.take()) {
+    problems.add(pointer, fmt::format("{}{}: {}", where, problem.pointer, problem.message));
+  }
+  return scene;
+}
+
 /// A base scene as JSON, which stands in the study at `pointer` or names a file there.
 std::optional<json> base_scene(const json& given, const std::string& pointer,
                                const SceneFiles& files, Problems& problems) {
-  if (given.is_object()) return given;
+  if (given.is_object()) return with_present_words(given, pointer, "", problems);
   const std::string name = given.get<std::string>();
   if (files.load == nullptr) {
     problems.add(pointer, "names a file; must be the scene itself here");
@@ -297,7 +318,9 @@ std::optional<json> base_scene(const json& given, const std::string& pointer,
     for (const Problem& problem : inner.take()) {
       problems.add(pointer, fmt::format("{}: {}: {}", name, problem.pointer, problem.message));
     }
-    if (scene && scene->is_object()) return scene;
+    if (scene && scene->is_object()) {
+      return with_present_words(*std::move(scene), pointer, name + ": ", problems);
+    }
     problems.add(pointer, fmt::format("{} holds no scene", name));
   } catch (const std::runtime_error& error) {
     problems.add(pointer, error.what());
@@ -325,7 +348,9 @@ StudyPlan plan_study(std::string_view text, SceneLoader load, const void* contex
                      SceneOrigin origin) {
   StudyPlan plan;
   Problems problems;
-  if (const auto document = read_json(text, problems)) {
+  std::vector<FormerWord> former;
+  if (auto document = read_json(text, problems)) {
+    former = use_present_words(*document, kFormerStudyWords, problems);
     Reader reader(*document, "", problems);
     describe(reader, plan.study);
     reader.finish();
@@ -335,7 +360,7 @@ StudyPlan plan_study(std::string_view text, SceneLoader load, const void* contex
       if (problems.empty()) Planner(plan, problems, std::move(bases), origin).make_all();
     }
   }
-  plan.problems = problems.take();
+  plan.problems = at_written_places(problems.take(), former);
   if (!plan.problems.empty()) plan.runs.clear();
   return plan;
 }
@@ -352,6 +377,7 @@ std::string study_schema_text() {
        "Runs of one scene with some of its keys changed, compared by their error and "
        "their cost."}};
   schema.update(writer.schema());
+  add_former_words(schema, kFormerStudyWords);
   return schema.dump(2) + "\n";
 }
 

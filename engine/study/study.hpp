@@ -30,9 +30,9 @@ struct StudyAxis {
 };
 
 /// Several runs of each set-up that differ by a displacement of the particles at the start.
-struct StudyRepeats {
+struct StudyMembers {
   int count = 1;
-  double jitter = 1e-4;  ///< amplitude, in spacings
+  double perturbation = 1e-4;  ///< amplitude, in spacings
 };
 
 /// A study as it is written.
@@ -42,7 +42,7 @@ struct Study {
   nlohmann::json scene;  ///< the base: a scene, or the name of its file beside the study's
   std::vector<StudyCase> cases;
   std::vector<StudyAxis> vary;
-  std::optional<StudyRepeats> repeats;
+  std::optional<StudyMembers> members;
   int threads = 1;              ///< of each run
   std::vector<double> targets;  ///< errors that the cheapest set-up is sought for
 };
@@ -50,7 +50,7 @@ struct Study {
 /// One run of a study: an ordinary job.
 struct StudyRun {
   std::string name;   ///< of its folder: letters, digits, _ . -
-  std::string setup;  ///< the same for all repeats
+  std::string setup;  ///< the same for all members
   std::string of_case;
   std::vector<std::pair<std::string, std::string>> values;  ///< varied key and value, as texts
   std::string scene_text;

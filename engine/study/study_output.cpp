@@ -130,7 +130,7 @@ std::string machines_of(const StudyResult& result) {
   return fmt::format("{}", fmt::join(machines, "; "));
 }
 
-/// With the spread of its repeats, where it has some.
+/// With the spread of its members, where it has some.
 void add_mark(ChartMarks& marks, const SetupResult& setup) {
   marks.x.push_back(*setup.core_seconds);
   marks.y.push_back(*setup.error);

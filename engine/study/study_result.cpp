@@ -28,7 +28,7 @@ std::vector<SetupResult> group(const std::vector<StudyRun>& runs) {
   return setups;
 }
 
-/// Means over the repeats; nothing as long as one is missing.
+/// Means over the members; nothing as long as one is missing.
 void average(SetupResult& setup, const std::vector<StudyRow>& rows) {
   double error = 0.0;
   double cost = 0.0;
@@ -91,7 +91,7 @@ std::string family_of(const SetupResult& setup) {
   return varied ? name : std::string{};
 }
 
-/// Mean of each quantity over the repeats of a set-up, the error first if there is one.
+/// Mean of each quantity over the members of a set-up, the error first if there is one.
 std::vector<std::pair<std::string, double>> quantities_of(const SetupResult& setup,
                                                           const std::vector<StudyRow>& rows) {
   std::vector<std::pair<std::string, double>> all;

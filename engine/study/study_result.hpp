@@ -26,7 +26,7 @@ struct StudyRow {
   std::string machine, simd_target;
 };
 
-/// All repeats of one set-up.
+/// All members of one set-up.
 struct SetupResult {
   std::string name;
   std::string of_case;
@@ -34,9 +34,9 @@ struct SetupResult {
   double spacing = 0.0;           ///< m
   std::vector<std::size_t> runs;  ///< places in StudyResult::rows
   std::size_t completed = 0;
-  std::optional<double> error;  ///< mean over the repeats; only when all of them are completed
+  std::optional<double> error;  ///< mean over the members; only when all of them are completed
   std::optional<double> lowest_error, highest_error;
-  std::optional<double> core_seconds;  ///< mean over the repeats; only when all are completed
+  std::optional<double> core_seconds;  ///< mean over the members; only when all are completed
   /// From the finest spacing of set-ups that differ in nothing else: mean over their quantities of
   /// |q - q_finest| / max(|q|, |q_finest|). Absent where no spacing is varied.
   std::optional<double> difference;

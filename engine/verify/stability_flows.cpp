@@ -123,9 +123,9 @@ CaseResult one_particle_film(StabilityBench& bench) {
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
 
-CaseResult half_jitter(StabilityBench& bench) {
-  Json scene = still_water("jitter-half", {});
-  scene["jitter"] = {{"amplitude", 0.5}};
+CaseResult half_perturbation(StabilityBench& bench) {
+  Json scene = still_water("perturbation-half", {});
+  scene["perturbation"] = {{"amplitude", 0.5}};
   return result_of(bench.run(scene), Verdict::stable, Verdict::stable_with_warnings);
 }
 
@@ -200,8 +200,8 @@ constexpr std::array kFlowCases{
     StabilityCase{"droplet-mach-1", "drop on a floor at c", "failed", droplet_1},
     StabilityCase{"one-particle-film", "one layer of particles at rest", "stable",
                   one_particle_film, kLifted},
-    StabilityCase{"jitter-half", "particles displaced by up to half their distance", "stable",
-                  half_jitter},
+    StabilityCase{"perturbation-half", "particles displaced by up to half their distance", "stable",
+                  half_perturbation},
     StabilityCase{"coincident", "two particles at one place", "stable", coincident_particles},
     StabilityCase{"overlap", "two regions at one place", "rejected", overlapping_regions},
     StabilityCase{"free-fall", "one particle in free fall", "place to 1e-12", free_fall},

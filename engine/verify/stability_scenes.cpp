@@ -44,7 +44,8 @@ Json with_scheme(Json scene, const Json& scheme) {
   if (scene.contains("tank")) return scene;
   // Shifting conserves no angular momentum: the coarse rotating patch lost 0.003 of its own. Where
   // nothing is hit there is nothing to mend either.
-  for (const char* term : {"wall_pressure", "wall_friction", "wall_drag", "particle_shifting"}) {
+  for (const char* term :
+       {"wall_pressure", "wall_artificial_viscosity", "wall_shear", "particle_shifting"}) {
     scene["numerics"].erase(term);
   }
   return scene;

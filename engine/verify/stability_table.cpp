@@ -94,7 +94,7 @@ struct OtherUnits {
 Json falling_water(const StillWater& water, Json scheme) {
   scheme["numerics"]["precision"] = "double";
   // A viscosity in m^2/s is not the same in other units.
-  scheme["numerics"].erase("physical_viscosity");
+  scheme["numerics"].erase("laminar_viscosity");
   Json scene = with_scheme(still_water("units", water), scheme);
   // Every step: where a sample falls must not hang on the rounding of its time.
   scene["sensors"][0]["interval"] = 0.0;

@@ -80,7 +80,8 @@ constexpr Case kCases[] = {
        scene.method.viscosity.reset();
        scene.method.reinitialisation.reset();
      }},
-    {"with_wall_friction", [](Scene& scene) { scene.method.wall_friction.emplace(); }},
+    {"with_wall_artificial_viscosity",
+     [](Scene& scene) { scene.method.wall_artificial_viscosity.emplace(); }},
     {"in_double_precision",
      [](Scene& scene) { scene.method.precision = Precision::double_precision; }},
 };

@@ -19,7 +19,7 @@ json still_water(double width, json fluid, json obstacles) {
     "resolution": {"spacing": 0.01, "smoothing_ratio": 1.5},
     "numerics": {"kernel": "wendland_c2", "integrator": "kick_drift_kick", "courant": 1.0,
       "density_diffusion": {"kind": "fourtakas", "delta": 0.1},
-      "artificial_viscosity": {"alpha": 0.02, "beta": 0.5}, "wall_drag": {"coefficient": 0.01},
+      "artificial_viscosity": {"alpha": 0.02, "beta": 0.5}, "wall_shear": {"coefficient": 0.01},
       "wall_pressure": "clamped", "particle_shifting": {"coefficient": 2}},
     "end_time": 0.55})");
   scene["tank"] = {{"width", width}, {"height", 0.4}};

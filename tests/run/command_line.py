@@ -219,7 +219,7 @@ class Folders(Sandbox):
         said = self.expect(3, "run", self.write_scene(other), "--folder", "job").stderr
         self.assertIn("/resolution/spacing is 0.02 there and 0.03 here", said)
         other = scene(gravity=[0, -1], tank={"width": 2.0, "height": 1.0})
-        other["numerics"].pop("wall_friction")
+        other["numerics"].pop("wall_artificial_viscosity")
         said = self.expect(3, "run", self.write_scene(other), "--folder", "job").stderr
         self.assertIn("/gravity/1 is -9.81 there and -1 here, ", said)
         self.assertRegex(said, r", and \d more; choose another folder")

@@ -142,7 +142,7 @@ def random_scene(dice, schema):
     if dice.random() < 0.5:
         scene["resolution"]["smoothing_ratio"] = dice.uniform(0.8, 2.5)
     if dice.random() < 0.3:
-        scene["jitter"] = {"amplitude": log_uniform(dice, 1e-6, 0.5),
+        scene["perturbation"] = {"amplitude": log_uniform(dice, 1e-6, 0.5),
                            "seed": dice.randrange(10**9)}
     if dice.random() < 0.15:
         scene["domain"] = {"min": [-width, -height], "max": [2 * width, 3 * height]}

@@ -20,7 +20,7 @@ using testing::small_dam_break;
 
 constexpr const char* kRecommended = R"({"kernel": "wendland_c2", "integrator": "kick_drift_kick",
   "courant": 1.0, "density_diffusion": {"kind": "fourtakas", "delta": 0.1},
-  "artificial_viscosity": {"alpha": 0.02, "beta": 0.5}, "wall_drag": {"coefficient": 0.01},
+  "artificial_viscosity": {"alpha": 0.02, "beta": 0.5}, "wall_shear": {"coefficient": 0.01},
   "wall_pressure": "clamped", "particle_shifting": {"coefficient": 2}})";
 
 /// Water in a tank that brakes: it leaves over the rim towards which it is pulled.

@@ -35,7 +35,7 @@ def scene(**changes):
             "scheme": "paper",
             "integrator": "kick_drift_kick",
             "courant": 0.5,
-            "wall_friction": {"alpha": 0.02},
+            "wall_artificial_viscosity": {"alpha": 0.02},
             "wall_pressure": "clamped",
             "density_diffusion": {"delta": 0.1},
             "artificial_viscosity": {"alpha": 0.02},
@@ -560,7 +560,7 @@ class Reading(Sandbox):
 
     def test_plan_tells_what_runs_and_what_it_takes(self):
         text = self.expect(0, "plan", self.write_scene()).stdout
-        self.assertIn("wall_friction", text)
+        self.assertIn("wall_artificial_viscosity", text)
         report = json.loads(self.expect(0, "plan", self.write_scene(), "--json").stdout)
         self.assertEqual(report["estimate"]["fluid_particles"], 450)
         self.assertGreater(report["calibration"]["seconds"], 0.0)

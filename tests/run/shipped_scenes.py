@@ -66,7 +66,7 @@ def variant(scene, precision, seed, arguments):
     scene = json.loads(json.dumps(scene))
     scene.setdefault("numerics", {})["precision"] = precision
     if seed:
-        scene["jitter"] = {"amplitude": AMPLITUDE, "seed": seed}
+        scene["perturbation"] = {"amplitude": AMPLITUDE, "seed": seed}
     if arguments.end_time:
         scene["end_time"] = arguments.end_time
     if arguments.spacing:

@@ -42,7 +42,7 @@ double wall_law_nu(const Method& m, double speed) {
       }
     }
   }
-  return m.wall_drag->coefficient * speed / (4.0 * dx * dx * dx * sum);
+  return m.wall_shear->coefficient * speed / (4.0 * dx * dx * dx * sum);
 }
 
 }  // namespace
@@ -124,8 +124,8 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
       a_size += drag.norm();
       d_rho += rate;
     };
-    const double nu = m.physical_viscosity ? m.physical_viscosity->nu : 0.0;
-    const double wall_nu = m.wall_drag ? wall_law_nu(m, fluid.v[i].norm()) : nu;
+    const double nu = m.laminar_viscosity ? m.laminar_viscosity->nu : 0.0;
+    const double wall_nu = m.wall_shear ? wall_law_nu(m, fluid.v[i].norm()) : nu;
     for (std::size_t j = 0; j < fluid.size(); ++j) {
       if (j == i) continue;
       const double rho_j = m.reference_density + fluid.excess[j];
@@ -138,9 +138,11 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
     for (std::size_t w = 0; w < walls.size(); ++w) {
       const double rho_w = wall_density(m, wall_pressure[w]);
       const double pi_iw =
-          m.wall_friction ? viscous_pressure({m.wall_friction->alpha, m.wall_friction->epsilon}, m,
-                                             rho_i, rho_w, fluid.v[i], fluid.x[i] - walls[w])
-                          : 0.0;
+          m.wall_artificial_viscosity
+              ? viscous_pressure(
+                    {m.wall_artificial_viscosity->alpha, m.wall_artificial_viscosity->epsilon}, m,
+                    rho_i, rho_w, fluid.v[i], fluid.x[i] - walls[w])
+              : 0.0;
       const bool diffuses = m.diffusion && m.diffusion->kind == DiffusionKind::molteni_colagrossi;
       add(walls[w], Vec::Zero(), rho_w, wall_pressure[w], pi_iw, diffuses, wall_nu);
     }

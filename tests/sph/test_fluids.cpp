@@ -24,19 +24,19 @@ Method full_method() {
   m.gravity = {0.7, -9.81};
   m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.13};
   m.viscosity = ArtificialViscosity{0.06, 0.02};
-  m.wall_friction = WallFriction{0.09, 0.03};
+  m.wall_artificial_viscosity = WallArtificialViscosity{0.09, 0.03};
   m.reinitialisation = Reinitialisation{20};
   return m;
 }
 
 Fluid random_block(Dice& dice, const Vec& corner, int columns, int rows, double spacing,
-                   double jitter, double speed, double excess) {
+                   double perturbation, double speed, double excess) {
   Fluid fluid;
   const Vec one = Vec::Ones();
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Vec place = corner + spacing * Vec(column + 0.5, row + 0.5);
-      const Vec shift = dice.in_box(-jitter * spacing * one, jitter * spacing * one);
+      const Vec shift = dice.in_box(-perturbation * spacing * one, perturbation * spacing * one);
       const Vec velocity = dice.in_box(-speed * one, speed * one);
       fluid.add(place + shift, velocity, dice.between(-excess, excess));
     }

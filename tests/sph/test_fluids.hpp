@@ -53,10 +53,10 @@ class Dice {
 [[nodiscard]] Method full_method();
 
 /// columns x rows particles at the cell centres of a lattice of spacing dx from `corner`, each
-/// moved by up to `jitter` dx, with velocities up to `speed` (m/s) and excesses up to `excess`
-/// (kg/m^3) in size.
+/// moved by up to `perturbation` dx, with velocities up to `speed` (m/s) and excesses up to
+/// `excess` (kg/m^3) in size.
 [[nodiscard]] Fluid random_block(Dice& dice, const Vec& corner, int columns, int rows,
-                                 double spacing, double jitter, double speed, double excess);
+                                 double spacing, double perturbation, double speed, double excess);
 
 /// Three layers of wall particles below and to both sides of a block that starts at `corner`.
 [[nodiscard]] std::vector<Vec> walls_around(const Vec& corner, int columns, int rows,

@@ -80,7 +80,7 @@ class StudyProgram(unittest.TestCase):
 
     def test_warns_once_of_what_all_its_runs_have(self):
         outside = {"name": "outside", "kind": "pressure", "position": [-0.03, 0.05], "interval": 0.01}
-        self.write(scene=puddle(sensors=[*puddle()["sensors"], outside]), repeats={"count": 3})
+        self.write(scene=puddle(sensors=[*puddle()["sensors"], outside]), members={"count": 3})
         told = self.study("--no-run").stderr
         self.assertEqual(told.count("warning: run small-r1: /sensors/1/position: "), 1)
         self.assertEqual(told.count("warning"), 1)

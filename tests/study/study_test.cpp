@@ -84,19 +84,34 @@ TEST(Study, LeavesAKeyOutForNull) {
   EXPECT_TRUE(plan_of(small_study()).runs[0].scene.method.viscosity);
 }
 
-TEST(Study, GivesEachRepeatItsOwnSeed) {
+TEST(Study, GivesEachMemberItsOwnSeed) {
   json study = small_study();
-  study["repeats"] = {{"count", 3}, {"jitter", 0.01}};
+  study["members"] = {{"count", 3}, {"perturbation", 0.01}};
   const StudyPlan plan = plan_of(study);
   ASSERT_EQ(plan.runs.size(), 3u);
   std::set<int> seeds;
   for (const StudyRun& run : plan.runs) {
-    ASSERT_TRUE(run.scene.jitter);
-    EXPECT_DOUBLE_EQ(run.scene.jitter->amplitude, 0.01);
-    seeds.insert(run.scene.jitter->seed);
+    ASSERT_TRUE(run.scene.perturbation);
+    EXPECT_DOUBLE_EQ(run.scene.perturbation->amplitude, 0.01);
+    seeds.insert(run.scene.perturbation->seed);
     EXPECT_EQ(run.setup, "small");
   }
   EXPECT_EQ(seeds.size(), 3u);
+}
+
+TEST(Study, ReadsFormerNamesOfItsOwnKeysAndOfTheScenes) {
+  json study = small_study();
+  study["repeats"] = {{"count", 2}, {"jitter", 0.02}};
+  study["cases"] = {{{"name", "rough"}, {"set", {{"/numerics/wall_drag/coefficient", 0.03}}}}};
+  study["vary"] = {{{"key", "/numerics/wall_drag"}, {"values", {{{"coefficient", 0.02}}}}}};
+  const StudyPlan plan = plan_of(study);
+  ASSERT_EQ(plan.runs.size(), 2u);
+  EXPECT_DOUBLE_EQ(plan.runs[1].scene.perturbation.value().amplitude, 0.02);
+  EXPECT_DOUBLE_EQ(plan.runs[1].scene.method.wall_shear.value().coefficient, 0.02);
+  EXPECT_TRUE(plan.runs[1].setup.starts_with("rough-wall_drag-")) << plan.runs[1].setup;
+
+  study["repeats"]["jitter"] = 7;
+  expect_refused(study, "/repeats/jitter", "");
 }
 
 TEST(Study, RefusesAMisspelledKeyOfTheSceneBeforeAnythingRuns) {
@@ -145,7 +160,7 @@ TEST(Study, RefusesAGridWithoutEndBeforeMakingIt) {
 
 TEST(Study, RefusesMoreRunsThanItsReaderAllows) {
   json study = small_study();
-  study["repeats"] = {{"count", 3}};
+  study["members"] = {{"count", 3}};
   EXPECT_EQ(plan_study(study.dump(), nullptr, nullptr, 3).runs.size(), 3u);
   EXPECT_TRUE(plan_study(study.dump(), nullptr, nullptr, 2).runs.empty());
 }
@@ -182,7 +197,7 @@ TEST(Study, KeepsTheWarningsOfEachRun) {
   json study = small_study();
   study["scene"]["sensors"] = {
       {{"name", "outside"}, {"kind", "pressure"}, {"position", {-0.03, 0.05}}, {"interval", 0.01}}};
-  study["repeats"] = {{"count", 2}};
+  study["members"] = {{"count", 2}};
   const StudyPlan plan = plan_of(study);
   ASSERT_EQ(plan.runs.size(), 2U);
   ASSERT_EQ(plan.runs[1].warnings.size(), 1U);

@@ -228,12 +228,12 @@ TEST(StabilityScenes, SchemesAreThoseOfTheExamples) {
 TEST(StabilityScenes, WithoutATankTheSchemesWallTermsAndItsShiftingAreLeftOut) {
   const nlohmann::json drop =
       with_scheme(in_space("drop", circle(Vec::Zero(), 1.0), 0.1, 10.0, 1.0), recommended_scheme());
-  EXPECT_FALSE(drop["numerics"].contains("wall_drag"));
+  EXPECT_FALSE(drop["numerics"].contains("wall_shear"));
   EXPECT_FALSE(drop["numerics"].contains("particle_shifting"));
   EXPECT_EQ(drop["resolution"], (nlohmann::json{{"spacing", 0.1}, {"smoothing_ratio", 1.5}}));
   EXPECT_TRUE(parse_job_scene(drop.dump()).scene.has_value());
   const nlohmann::json tank = with_scheme(still_water("tank", {}), recommended_scheme());
-  EXPECT_TRUE(tank["numerics"].contains("wall_drag"));
+  EXPECT_TRUE(tank["numerics"].contains("wall_shear"));
   EXPECT_TRUE(tank["numerics"].contains("particle_shifting"));
   EXPECT_TRUE(parse_job_scene(tank.dump()).scene.has_value());
 }

@@ -137,7 +137,7 @@ void check_work(const Scene& scene, Problems& problems) {
   }
 }
 
-void check_wall_drag(const Scene& scene, Problems& problems) {
+void check_wall_shear(const Scene& scene, Problems& problems) {
   const Method& m = scene.method;
   const auto refuse = [&](std::string_view key, std::string_view other) {
     problems.add(fmt::format("/numerics/{}", key),
@@ -145,9 +145,11 @@ void check_wall_drag(const Scene& scene, Problems& problems) {
                              "of the two",
                              other));
   };
-  if (m.wall_friction && m.physical_viscosity) refuse("wall_friction", "physical_viscosity");
-  if (m.wall_friction && m.wall_drag) refuse("wall_friction", "wall_drag");
-  if (m.wall_drag && m.physical_viscosity) refuse("wall_drag", "physical_viscosity");
+  if (m.wall_artificial_viscosity && m.laminar_viscosity)
+    refuse("wall_artificial_viscosity", "laminar_viscosity");
+  if (m.wall_artificial_viscosity && m.wall_shear)
+    refuse("wall_artificial_viscosity", "wall_shear");
+  if (m.wall_shear && m.laminar_viscosity) refuse("wall_shear", "laminar_viscosity");
 }
 
 void check_shifting(const Scene& scene, Problems& problems) {
@@ -240,7 +242,7 @@ void check(const Document& document, const CheckedAs& as, Problems& problems, Pr
   check_sound_speed(scene, document, problems);
   check_particle_count(scene, problems);
   check_gate(scene, problems);
-  check_wall_drag(scene, problems);
+  check_wall_shear(scene, problems);
   check_shifting(scene, problems);
   if (!placed) return;
   check_domain(scene, document, problems);

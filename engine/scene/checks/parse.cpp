@@ -5,6 +5,7 @@
 #include "engine/scene/checks/check.hpp"
 #include "engine/scene/checks/meaning.hpp"
 #include "engine/scene/format/describe.hpp"
+#include "engine/scene/format/former_words.hpp"
 #include "engine/scene/format/json_text.hpp"
 #include "engine/scene/format/numerics_json.hpp"
 #include "engine/scene/format/reader.hpp"
@@ -70,8 +71,9 @@ Document read_without_scheme(const json& scene, SceneOrigin origin, Problems& pr
 ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOrigin origin) {
   Problems problems;
   Problems warnings;
-  const auto scene = read_json(text, problems);
+  auto scene = read_json(text, problems);
   if (!scene) return {std::nullopt, problems.take(), {}};
+  const auto former = use_present_words(*scene, kFormerSceneWords, problems);
 
   const json numerics = numerics_of(*scene);
   const Document document =
@@ -80,8 +82,8 @@ ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOr
           : read_without_scheme(*scene, origin, problems);
   if (scene->is_object()) check(document, {stability, origin}, problems, warnings);
 
-  if (!problems.empty()) return {std::nullopt, problems.take(), {}};
-  return {resolve(document), {}, warnings.take()};
+  if (!problems.empty()) return {std::nullopt, at_written_places(problems.take(), former), {}};
+  return {resolve(document), {}, at_written_places(warnings.take(), former)};
 }
 
 ParseResult parse_job_scene(std::string_view text) {

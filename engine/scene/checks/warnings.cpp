@@ -20,12 +20,12 @@ std::string below(double limit) {
 
 void warn_of_no_damping(const Scene& scene, Problems& warnings) {
   const Method& m = scene.method;
-  if (m.viscosity || m.physical_viscosity || m.diffusion) return;
+  if (m.viscosity || m.laminar_viscosity || m.diffusion) return;
   warnings.add(
       "/numerics",
       "names neither a viscosity nor density_diffusion: nothing damps what an impact stirs "
       "up, and the energy guard may end the run; name one of artificial_viscosity, "
-      "physical_viscosity and density_diffusion");
+      "laminar_viscosity and density_diffusion");
 }
 
 }  // namespace

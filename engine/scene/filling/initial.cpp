@@ -61,11 +61,11 @@ double noise(std::uint64_t seed, std::uint64_t counter) {
   return static_cast<double>(z >> 11U) * 0x1p-52 - 1.0;
 }
 
-void displace(const Jitter& jitter, double spacing, Particles& particles) {
-  const auto seed = static_cast<std::uint64_t>(jitter.seed);
+void displace(const Perturbation& perturbation, double spacing, Particles& particles) {
+  const auto seed = static_cast<std::uint64_t>(perturbation.seed);
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    particles.x[i] += jitter.amplitude * spacing * noise(seed, 2 * i);
-    particles.y[i] += jitter.amplitude * spacing * noise(seed, 2 * i + 1);
+    particles.x[i] += perturbation.amplitude * spacing * noise(seed, 2 * i);
+    particles.y[i] += perturbation.amplitude * spacing * noise(seed, 2 * i + 1);
   }
 }
 
@@ -154,7 +154,8 @@ InitialParticles create_particles(const Scene& scene) {
   Places places = on_lattice(scene);
   result.packing = pack_misfits(scene, result.walls, places);
   result.state.particles = particles_at(scene, places);
-  if (scene.jitter) displace(*scene.jitter, scene.method.spacing, result.state.particles);
+  if (scene.perturbation)
+    displace(*scene.perturbation, scene.method.spacing, result.state.particles);
   return result;
 }
 

@@ -73,14 +73,15 @@ void plan_walls(const Scene& scene, const Lists& passes) {
   constexpr std::string_view kGate = "dummy particles of the lifted gate";
   if (!has_walls(scene)) {
     passes.leave_out("wall_pressure", about, "no key tank and no key obstacles");
-    passes.leave_out("wall_friction", kFriction, "no walls to rub on");
-    passes.leave_out("wall_drag", kDrag, "no walls to rub on");
+    passes.leave_out("wall_artificial_viscosity", kFriction, "no walls to rub on");
+    passes.leave_out("wall_shear", kDrag, "no walls to rub on");
     passes.leave_out("gate", kGate, "no key gate");
     return;
   }
   passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
-  passes.term(scene.method.wall_friction.has_value(), "wall_friction", kFriction, scene.numerics);
-  passes.term(scene.method.wall_drag.has_value(), "wall_drag", kDrag, scene.numerics);
+  passes.term(scene.method.wall_artificial_viscosity.has_value(), "wall_artificial_viscosity",
+              kFriction, scene.numerics);
+  passes.term(scene.method.wall_shear.has_value(), "wall_shear", kDrag, scene.numerics);
   passes.either(scene.gate.has_value(), "gate", kGate, "gate");
 }
 
@@ -125,10 +126,10 @@ void plan_passes(const Scene& scene, const Lists& passes) {
   passes.term(m.viscosity.has_value(), "artificial_viscosity", "eq. 8 between fluid particles",
               scene.numerics);
   const std::string stress =
-      m.physical_viscosity
-          ? fmt::format("viscous stress, nu {} m^2/s, no slip at walls", m.physical_viscosity->nu)
+      m.laminar_viscosity
+          ? fmt::format("viscous stress, nu {} m^2/s, no slip at walls", m.laminar_viscosity->nu)
           : "viscous stress, no slip at walls";
-  passes.term(m.physical_viscosity.has_value(), "physical_viscosity", stress, scene.numerics);
+  passes.term(m.laminar_viscosity.has_value(), "laminar_viscosity", stress, scene.numerics);
   plan_walls(scene, passes);
   passes.either(!m.gravity.isZero(0.0), "gravity", "body acceleration of eq. 5", "gravity");
   passes.run("update", "time step of eq. 18 and integration",

@@ -17,7 +17,7 @@ struct PlanItem {
 /// What runs for a scene, and what its absent keys leave out.
 struct Plan {
   std::vector<PlanItem> numerics;         ///< each number and word of the method, as
-                                          ///< wall_drag.coefficient, and whose it is
+                                          ///< wall_shear.coefficient, and whose it is
   std::vector<PlanItem> passes;           ///< passes of a step and the terms in their sums
   std::vector<PlanItem> passes_left_out;  ///< not run
   std::vector<PlanItem> fields;           ///< arrays of one number per particle

@@ -1,6 +1,7 @@
 #include "engine/scene/format/canonical.hpp"
 
 #include "engine/scene/format/describe.hpp"
+#include "engine/scene/format/former_words.hpp"
 #include "engine/scene/format/json_text.hpp"
 #include "engine/scene/format/writer.hpp"
 
@@ -28,6 +29,7 @@ std::string identity_text(const Scene& scene) {
   for (auto each = numerics.begin(); each != numerics.end();) {
     each = each->is_null() ? numerics.erase(each) : std::next(each);
   }
+  use_former_words(object, kFormerSceneWords);
   return write_json(object);
 }
 

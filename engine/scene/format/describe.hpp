@@ -170,12 +170,12 @@ void describe(Archive& a, ArtificialViscosity& term) {
             .range = from(0, 10)});
 }
 template <class Archive>
-void describe(Archive& a, WallFriction& term) {
+void describe(Archive& a, WallArtificialViscosity& term) {
   describe_viscosity(a, term.alpha, term.epsilon);
 }
 
 template <class Archive>
-void describe(Archive& a, PhysicalViscosity& term) {
+void describe(Archive& a, LaminarViscosity& term) {
   a.number("nu", term.nu,
            {.about = "kinematic viscosity: 1e-6 m^2/s is water's own, a turbulent flow's is larger",
             .unit = "m^2/s",
@@ -183,7 +183,7 @@ void describe(Archive& a, PhysicalViscosity& term) {
 }
 
 template <class Archive>
-void describe(Archive& a, WallDrag& term) {
+void describe(Archive& a, WallShear& term) {
   a.number("coefficient", term.coefficient,
            {.about = "skin friction coefficient: stress at the wall over rho v^2/2; 0.004 is a "
                      "smooth wall's, more stands for walls in front and behind as well",
@@ -222,12 +222,12 @@ void describe_numerics(Archive& a, Scene& scene) {
   a.term("density_diffusion", method.diffusion, {.about = "density diffusion D_i, eq. 7"});
   a.term("artificial_viscosity", method.viscosity,
          {.about = "artificial viscosity Pi_ij between fluid particles, eq. 8"});
-  a.term("wall_friction", method.wall_friction,
-         {.about = "Pi_ij of eq. 8 against walls at rest; not beside physical_viscosity; in place "
-                   "of wall_drag"});
-  a.term("physical_viscosity", method.physical_viscosity,
-         {.about = "viscous stress in the fluid, no slip at walls; in place of wall_drag"});
-  a.term("wall_drag", method.wall_drag,
+  a.term("wall_artificial_viscosity", method.wall_artificial_viscosity,
+         {.about = "Pi_ij of eq. 8 against walls at rest; not beside laminar_viscosity; in place "
+                   "of wall_shear"});
+  a.term("laminar_viscosity", method.laminar_viscosity,
+         {.about = "viscous stress in the fluid, no slip at walls; in place of wall_shear"});
+  a.term("wall_shear", method.wall_shear,
          {.about = "stress at walls that grows with the square of the speed"});
   a.word("wall_pressure", kWallPressureWords, method.wall_pressure,
          {.about = "pressure of the walls' dummy particles, eq. 9"});
@@ -325,12 +325,13 @@ void describe(Archive& a, Frames& frames) {
 }
 
 template <class Archive>
-void describe(Archive& a, Jitter& jitter) {
-  a.number("amplitude", jitter.amplitude,
+void describe(Archive& a, Perturbation& perturbation) {
+  a.number("amplitude", perturbation.amplitude,
            {.about = "largest displacement in each direction, in particle distances",
             .range = above(0, 0.5),
             .need = Need::required});
-  a.integer("seed", jitter.seed, {.about = "another seed, another run", .range = from(0, 1e9)});
+  a.integer("seed", perturbation.seed,
+            {.about = "another seed, another run", .range = from(0, 1e9)});
 }
 
 template <class Archive>
@@ -454,7 +455,7 @@ void describe(Archive& a, Document& document) {
             [&](auto& child) { describe_material(child, document); });
   a.section("resolution", {.about = "how fine", .need = Need::required},
             [&](auto& child) { describe_resolution(child, document); });
-  a.section("jitter", scene.jitter,
+  a.section("perturbation", scene.perturbation,
             {.about = "random displacement of the particles at the start, for ensembles",
              .otherwise = "a regular lattice"});
   a.section("numerics", {.about = "the scheme, and what differs from it"},

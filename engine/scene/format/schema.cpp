@@ -1,6 +1,11 @@
 #include "engine/scene/format/schema.hpp"
 
+#include <fmt/format.h>
+
+#include <ranges>
+
 #include "engine/scene/format/describe.hpp"
+#include "engine/scene/format/former_words.hpp"
 #include "engine/scene/format/schema_writer.hpp"
 #include "engine/scene/model/problems.hpp"
 
@@ -121,6 +126,25 @@ SchemaWriter::json SchemaWriter::schema() const {
   return result;
 }
 
+void add_former_words(SchemaWriter::json& schema, std::span<const FormerWord> words) {
+  using Pointer = SchemaWriter::json::json_pointer;
+  for (const FormerWord& word : words | std::views::reverse) {
+    const auto in_schema = [](std::string_view key) {
+      Pointer place;
+      for (std::string_view rest = key.substr(1);;) {
+        const std::size_t end = rest.find('/');
+        place = place / "properties" / std::string(rest.substr(0, end));
+        if (end == rest.npos) return place;
+        rest.remove_prefix(end + 1);
+      }
+    };
+    SchemaWriter::json property = schema[in_schema(word.present)];
+    property["description"] = fmt::format("former name of {}", word.present);
+    property["deprecated"] = true;
+    schema[in_schema(word.former)] = std::move(property);
+  }
+}
+
 std::string scene_schema_text() {
   Document fresh;
   SchemaWriter writer;
@@ -133,6 +157,7 @@ std::string scene_schema_text() {
        "What to simulate. Lengths in m, times in s, SI units throughout; x to the right, y up. A "
        "key that is left out is a term that is left out, or has the default given here."}};
   schema.update(writer.schema());
+  add_former_words(schema, kFormerSceneWords);
   return schema.dump(2) + "\n";
 }
 

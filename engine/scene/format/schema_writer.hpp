@@ -3,12 +3,14 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "engine/scene/format/former_words.hpp"
 #include "engine/scene/model/spec.hpp"
 #include "engine/space/vec.hpp"
 
@@ -123,5 +125,9 @@ class SchemaWriter {
   json required_ = json::array();
   json branches_ = json::array();
 };
+
+/// Lets the schema of a document take its keys' former names, as deprecated. A word that renames
+/// the section of another stands after it.
+void add_former_words(SchemaWriter::json& schema, std::span<const FormerWord> words);
 
 }  // namespace sluice

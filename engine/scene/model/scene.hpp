@@ -83,7 +83,7 @@ struct Frames {
 
 /// Displaces each particle at the start, so that runs of one scene make an ensemble: what follows
 /// an impact is chaotic, and a single run does not tell its spread.
-struct Jitter {
+struct Perturbation {
   double amplitude = 0.0;  ///< largest displacement in each direction, in spacings
   int seed = 1;
 };
@@ -139,7 +139,7 @@ struct Scene {
   Method method;
   NumericsSource numerics;  ///< where the method's words and terms come from; changes nothing
   std::vector<Sensor> sensors;
-  std::optional<Jitter> jitter;
+  std::optional<Perturbation> perturbation;
   std::optional<Frames> frames;
   std::vector<double> pictures;  ///< s; times of a report's pictures; empty: it chooses
   std::optional<Scales> scales;

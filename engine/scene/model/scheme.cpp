@@ -15,7 +15,7 @@ Method recommended_method() {
   m.courant = 1.0;
   m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.1};
   m.viscosity = ArtificialViscosity{.alpha = 0.02, .epsilon = 0.01, .beta = 0.5};
-  m.wall_drag = WallDrag{0.01};
+  m.wall_shear = WallShear{0.01};
   m.wall_pressure = WallPressure::clamped;
   m.shifting = ParticleShifting{2.0};
   return m;
@@ -58,8 +58,8 @@ void leave_out_excluded(Method& method, const NumericsSource& source) {
   const bool leap_frog = method.integrator == Integrator::modified_leap_frog;
   if (leap_frog && !source.names("/particle_shifting")) method.shifting.reset();
   if (leap_frog && !source.names("/courant")) method.courant = kPaperCourant;
-  const bool held = method.wall_friction || method.physical_viscosity;
-  if (held && !source.names("/wall_drag")) method.wall_drag.reset();
+  const bool held = method.wall_artificial_viscosity || method.laminar_viscosity;
+  if (held && !source.names("/wall_shear")) method.wall_shear.reset();
 }
 
 }  // namespace sluice

@@ -24,7 +24,7 @@ enum class Scheme {
 struct NumericsSource {
   std::optional<Scheme> scheme;
   /// JSON pointers into `numerics` of what the scene itself says, such as /kernel and
-  /// /wall_drag/coefficient; sorted.
+  /// /wall_shear/coefficient; sorted.
   std::vector<std::string> named;
 
   /// Whether the scene says anything at or below this pointer.
@@ -32,8 +32,8 @@ struct NumericsSource {
 };
 
 /// Leaves out what the scheme brought and what the scene names beside it excludes: particle
-/// shifting, and a step that is too long, beside modified_leap_frog; wall_drag beside wall_friction
-/// or physical_viscosity. What the scene names itself stays.
+/// shifting, and a step that is too long, beside modified_leap_frog; wall_shear beside
+/// wall_artificial_viscosity or laminar_viscosity. What the scene names itself stays.
 void leave_out_excluded(Method& method, const NumericsSource& source);
 
 }  // namespace sluice

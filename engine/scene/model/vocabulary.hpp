@@ -38,7 +38,7 @@ inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
 }};
 inline constexpr Words<Scheme, 2> kSchemeWords{{
     {"recommended", Scheme::recommended,
-     "wendland_c2, kick_drift_kick at C = 1, fourtakas, alpha 0.02 with beta 0.5, wall_drag, "
+     "wendland_c2, kick_drift_kick at C = 1, fourtakas, alpha 0.02 with beta 0.5, wall_shear, "
      "clamped "
      "walls, particle_shifting"},
     {"paper", Scheme::paper,

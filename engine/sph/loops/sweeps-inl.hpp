@@ -203,7 +203,7 @@ enum class Share { i_alone, both };
 /// What holds the fluid back at walls: nothing, eq. 8, a stress that acts in the fluid as well, or
 /// a wall law.
 enum class Viscosity { none, linear, with_impacts };
-enum class Drag { none, wall_friction, physical_viscosity, wall_drag };
+enum class Drag { none, wall_artificial_viscosity, laminar_viscosity, wall_shear };
 
 /// Which terms a rate sweep sums.
 enum class Sums { density, acceleration, both };
@@ -214,10 +214,11 @@ struct Terms {
   static constexpr bool acceleration = kSums != Sums::density;
   static constexpr bool diffusion = density && kDiffusion;
   static constexpr Viscosity viscosity = acceleration ? kViscosity : Viscosity::none;
-  static constexpr Viscosity friction =
-      acceleration && kDrag == Drag::wall_friction ? Viscosity::linear : Viscosity::none;
-  static constexpr bool physical = acceleration && kDrag == Drag::physical_viscosity;
-  static constexpr bool wall_drag = acceleration && kDrag == Drag::wall_drag;
+  static constexpr Viscosity friction = acceleration && kDrag == Drag::wall_artificial_viscosity
+                                            ? Viscosity::linear
+                                            : Viscosity::none;
+  static constexpr bool physical = acceleration && kDrag == Drag::laminar_viscosity;
+  static constexpr bool wall_shear = acceleration && kDrag == Drag::wall_shear;
   static constexpr bool shifting = kShifting;
   static constexpr SumBlocks blocks = shifting        ? kDensityAndShiftingSums
                                       : !acceleration ? kDensitySums
@@ -237,8 +238,8 @@ template <class Shape, class Terms, Viscosity kViscosity, Share kShare, typename
 HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
                           const TileShift<T>& shift, V x_i, V y_i,
                           const ArtificialViscosityTerm<T>& viscosity,
-                          const PhysicalViscosityTerm<T>& physical,
-                          const WallDragTerm<T>& wall_drag,
+                          const LaminarViscosityTerm<T>& physical,
+                          const WallShearTerm<T>& wall_shear,
                           const DensityDiffusionTerm<T>& diffusion, RateOfI<V>& i, T* sums) {
   const typename Blocks<T>::D d;
   const auto body = [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t part) HWY_ATTR {
@@ -286,9 +287,9 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
         x_j = hn::NegMulAdd(g, physical.summand(d, i.u, load_j(other.u + j)), x_j);
         y_j = hn::NegMulAdd(g, physical.summand(d, i.v, load_j(other.v + j)), y_j);
       }
-      if constexpr (Terms::wall_drag && kShare == Share::i_alone) {
-        x_j = hn::NegMulAdd(g, wall_drag.summand(d, i.speed, i.u), x_j);
-        y_j = hn::NegMulAdd(g, wall_drag.summand(d, i.speed, i.v), y_j);
+      if constexpr (Terms::wall_shear && kShare == Share::i_alone) {
+        x_j = hn::NegMulAdd(g, wall_shear.summand(d, i.speed, i.u), x_j);
+        y_j = hn::NegMulAdd(g, wall_shear.summand(d, i.speed, i.v), y_j);
       }
       i.x_sum = i.x_sum + x_j;
       i.y_sum = i.y_sum + y_j;
@@ -322,8 +323,8 @@ void sum_rates(const SweepTask<T>& task) {
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon,
                                              k.viscosity_beta};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon, T{0}};
-  const PhysicalViscosityTerm<T> physical{k.two_nu};
-  const WallDragTerm<T> wall_drag{k.wall_two_nu_by_speed};
+  const LaminarViscosityTerm<T> physical{k.two_nu};
+  const WallShearTerm<T> wall_shear{k.wall_two_nu_by_speed};
   std::fill_n(task.sums, Terms::blocks.stride * task.to_fluid->places(), T{});
 
   for (std::size_t c = 0; c < task.clusters; ++c) {
@@ -341,15 +342,15 @@ void sum_rates(const SweepTask<T>& task) {
       if constexpr (Terms::density) i.volume = load_i(self.volume + slot);
       if constexpr (Terms::diffusion) i.diffused = load_i(self.diffused + slot);
       if constexpr (Terms::acceleration) i.stress = load_i(self.stress + slot);
-      if constexpr (Terms::wall_drag) i.speed = hn::Sqrt(hn::MulAdd(i.u, i.u, i.v * i.v));
+      if constexpr (Terms::wall_shear) i.speed = hn::Sqrt(hn::MulAdd(i.u, i.u, i.v * i.v));
       i.density_sum = i.x_sum = i.y_sum = i.trace_sum = hn::Zero(d);
 
       add_rates<Shape, Terms, Terms::viscosity, Share::both>(*task.to_fluid, c, task.fluid, shift,
                                                              x_i, y_i, viscosity, physical,
-                                                             wall_drag, diffusion, i, task.sums);
+                                                             wall_shear, diffusion, i, task.sums);
       if (task.to_wall != nullptr) {
         add_rates<Shape, Terms, Terms::friction, Share::i_alone>(
-            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, physical, wall_drag,
+            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, physical, wall_shear,
             wall_diffusion, i, task.sums);
       }
       T* const sums = task.sums + Terms::blocks.stride * c + part;
@@ -533,15 +534,15 @@ template <class Shape, Sums kSums, typename T, bool kShifting = false>
 typename Sweeps<T>::Sweep select_rates(const Method& m) {
   using enum Viscosity;
   const auto with = [&]<bool kDiffusion, Viscosity kViscosity>() -> typename Sweeps<T>::Sweep {
-    if (m.wall_friction) {
-      return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_friction>, T>;
+    if (m.wall_artificial_viscosity) {
+      return &sum_rates<Shape,
+                        Terms<kSums, kDiffusion, kViscosity, Drag::wall_artificial_viscosity>, T>;
     }
-    if (m.wall_drag) {
-      return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_drag>, T>;
+    if (m.wall_shear) {
+      return &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::wall_shear>, T>;
     }
-    return m.physical_viscosity
-               ? &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::physical_viscosity>,
-                            T>
+    return m.laminar_viscosity
+               ? &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::laminar_viscosity>, T>
                : &sum_rates<Shape, Terms<kSums, kDiffusion, kViscosity, Drag::none>, T>;
   };
   const auto with_viscosity = [&]<bool kDiffusion>() {

@@ -47,20 +47,20 @@ struct ArtificialViscosity {
 };
 
 /// Pi_ij of eq. 8 summed against resting walls: a friction that the paper's free slip leaves out.
-struct WallFriction {
+struct WallArtificialViscosity {
   double alpha = 0.02;
   double epsilon = 0.01;
 };
 
 /// Laminar viscous stress with no slip at walls (Morris et al. 1997): water's nu, or that of a
 /// turbulent flow (eddy viscosity). Unlike eq. 8 it does not depend on the particle distance.
-struct PhysicalViscosity {
+struct LaminarViscosity {
   double nu = 1e-6;  ///< kinematic viscosity, m^2/s
 };
 
 /// Wall law: the stress Cf/2 rho_0 |v| v of a turbulent boundary layer too thin to be resolved. It
 /// depends on neither the particle distance nor any scale of the flow.
-struct WallDrag {
+struct WallShear {
   double coefficient = 0.01;  ///< skin friction coefficient Cf, dimensionless
 };
 
@@ -111,9 +111,9 @@ struct Method {
   double courant = 0.25;  ///< C of eq. 18
   std::optional<DensityDiffusion> diffusion;
   std::optional<ArtificialViscosity> viscosity;
-  std::optional<WallFriction> wall_friction;
-  std::optional<PhysicalViscosity> physical_viscosity;
-  std::optional<WallDrag> wall_drag;         ///< at most one of these three
+  std::optional<WallArtificialViscosity> wall_artificial_viscosity;
+  std::optional<LaminarViscosity> laminar_viscosity;
+  std::optional<WallShear> wall_shear;       ///< at most one of these three
   std::optional<ParticleShifting> shifting;  ///< with kick_drift_kick only
   std::optional<Reinitialisation> reinitialisation;
   WallPressure wall_pressure = WallPressure::extrapolated;
@@ -161,8 +161,7 @@ struct Method {
   [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }
   /// 2 nu/(c h): the physical viscosity in the units of the sums; 0 without it.
   [[nodiscard]] double scaled_two_nu() const {
-    return physical_viscosity ? 2.0 * physical_viscosity->nu / (sound_speed * smoothing_length)
-                              : 0.0;
+    return laminar_viscosity ? 2.0 * laminar_viscosity->nu / (sound_speed * smoothing_length) : 0.0;
   }
   /// Distance at which W becomes zero, in smoothing lengths.
   [[nodiscard]] double support_ratio() const {

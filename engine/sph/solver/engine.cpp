@@ -88,14 +88,14 @@ TermConstants<T> term_constants(const Method& m, double tile_size) {
     k.viscosity_epsilon = static_cast<T>(m.viscosity->epsilon);
     k.viscosity_beta = static_cast<T>(m.viscosity->beta);
   }
-  if (m.wall_friction) {
-    k.friction_alpha = static_cast<T>(m.wall_friction->alpha);
-    k.friction_epsilon = static_cast<T>(m.wall_friction->epsilon);
+  if (m.wall_artificial_viscosity) {
+    k.friction_alpha = static_cast<T>(m.wall_artificial_viscosity->alpha);
+    k.friction_epsilon = static_cast<T>(m.wall_artificial_viscosity->epsilon);
   }
   k.two_nu = static_cast<T>(m.scaled_two_nu());
-  if (m.wall_drag) {
+  if (m.wall_shear) {
     k.wall_two_nu_by_speed =
-        static_cast<T>(m.wall_drag->coefficient / (2.0 * stress_across_wall(m)));
+        static_cast<T>(m.wall_shear->coefficient / (2.0 * stress_across_wall(m)));
   }
   const Vec gravity = m.gravity * m.smoothing_length / (m.sound_speed * m.sound_speed);
   k.gravity_x = static_cast<T>(gravity.x());

@@ -38,9 +38,9 @@ std::array<double, 12> cost_of(const Method& m) {
           m.diffusion ? 1.0 + static_cast<double>(m.diffusion->kind) : 0.0,
           m.viscosity.has_value() ? 1.0 : 0.0,
           m.viscosity && m.viscosity->beta > 0.0 ? 1.0 : 0.0,
-          m.wall_friction.has_value() ? 1.0 : 0.0,
-          m.physical_viscosity.has_value() ? 1.0 : 0.0,
-          m.wall_drag.has_value() ? 1.0 : 0.0,
+          m.wall_artificial_viscosity.has_value() ? 1.0 : 0.0,
+          m.laminar_viscosity.has_value() ? 1.0 : 0.0,
+          m.wall_shear.has_value() ? 1.0 : 0.0,
           m.shifting.has_value() ? 1.0 : 0.0,
           m.reinitialisation ? m.reinitialisation->interval : 0.0};
 }
@@ -51,7 +51,7 @@ Method unit_method(const Method& wanted) {
   m.smoothing_length = wanted.smoothing_length / wanted.spacing;
   m.spacing = m.sound_speed = m.reference_density = 1.0;
   m.gravity = Vec::Zero();
-  if (m.physical_viscosity) m.physical_viscosity->nu = 1e-3;
+  if (m.laminar_viscosity) m.laminar_viscosity->nu = 1e-3;
   m.lifted_wall.reset();
   m.wall_top.reset();
   m.domain = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};

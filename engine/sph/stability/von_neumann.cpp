@@ -177,7 +177,7 @@ CourantLimits courant_limits(const Method& method, Surface surface) {
   const LatticeStability all(method, surface);
   Method bare = method;
   bare.viscosity.reset();
-  bare.physical_viscosity.reset();
+  bare.laminar_viscosity.reset();
   bare.diffusion.reset();
   return {.scheme = all.courant_limit(),
           .sound = LatticeStability(bare, surface).courant_limit(),

@@ -112,7 +112,7 @@ struct ArtificialViscosityTerm {
 /// -g x_ij/h^4, neither a division nor a singularity is left. Walls take part with v_j = 0: no
 /// slip.
 template <typename T>
-struct PhysicalViscosityTerm {
+struct LaminarViscosityTerm {
   T two_nu;  ///< 2 nu/(c h)
 
   /// Summand before -g, for one component of the velocity.
@@ -126,7 +126,7 @@ struct PhysicalViscosityTerm {
 /// viscous stress above against the wall's particles, with the nu_i = Cf |v_i| h/(4 S) that makes
 /// the sum over wall and fluid that stress; S is stress_across_wall() of engine.cpp.
 template <typename T>
-struct WallDragTerm {
+struct WallShearTerm {
   T two_nu_by_speed;  ///< 2 nu_i/(c h) over |v_i|/c
 
   /// Summand before -g, for one component of the velocity.

@@ -60,14 +60,14 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
   EXPECT_EQ(m.integrator, Integrator::kick_drift_kick);
   EXPECT_EQ(m.courant, 0.8);
   EXPECT_EQ(m.precision, Precision::double_precision);
-  ASSERT_TRUE(m.diffusion && m.viscosity && m.wall_friction && m.reinitialisation);
+  ASSERT_TRUE(m.diffusion && m.viscosity && m.wall_artificial_viscosity && m.reinitialisation);
   EXPECT_EQ(m.diffusion->kind, DiffusionKind::fourtakas);
   EXPECT_EQ(m.diffusion->delta, 0.2);
   EXPECT_EQ(m.viscosity->alpha, 0.05);
   EXPECT_EQ(m.viscosity->epsilon, 0.02);
   EXPECT_EQ(m.viscosity->beta, 0.4);
-  EXPECT_EQ(m.wall_friction->alpha, 0.03);
-  EXPECT_EQ(m.wall_friction->epsilon, 0.03);
+  EXPECT_EQ(m.wall_artificial_viscosity->alpha, 0.03);
+  EXPECT_EQ(m.wall_artificial_viscosity->epsilon, 0.03);
   EXPECT_EQ(m.wall_pressure, WallPressure::clamped);
   EXPECT_EQ(m.reinitialisation->interval, 7);
 
@@ -111,26 +111,26 @@ TEST(ParseScene, LeavesOutWhatHasNoKey) {
 TEST(ParseScene, TurnsAGateIntoAWallOfThreeSpacingsThatIsLifted) {
   json text = base_scene();
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
-  text["numerics"] = {{"scheme", "recommended"}, {"physical_viscosity", {{"nu", 1e-4}}}};
+  text["numerics"] = {{"scheme", "recommended"}, {"laminar_viscosity", {{"nu", 1e-4}}}};
   const Scene s = parsed(text);
-  ASSERT_TRUE(s.gate && s.method.lifted_wall && s.method.physical_viscosity);
+  ASSERT_TRUE(s.gate && s.method.lifted_wall && s.method.laminar_viscosity);
   EXPECT_EQ(s.gate->height, 1.0) << "the tank's";
   EXPECT_EQ(s.method.lifted_wall->place.min, Vec(1.0, 0.0));
   EXPECT_NEAR(s.method.lifted_wall->place.max.x(), 1.15, 1e-12);
   EXPECT_EQ(s.method.lifted_wall->place.max.y(), 1.0);
   EXPECT_EQ(s.method.lifted_wall->speed, 3.46);
-  EXPECT_EQ(s.method.physical_viscosity->nu, 1e-4);
+  EXPECT_EQ(s.method.laminar_viscosity->nu, 1e-4);
 }
 
 TEST(ParseScene, GivesAnEmptyTermItsDefaults) {
   json text = base_scene();
   text["numerics"] = json::parse(R"({"scheme": "paper", "density_diffusion": {},
-      "artificial_viscosity": {}, "wall_friction": {}, "reinitialisation": {}})");
+      "artificial_viscosity": {}, "wall_artificial_viscosity": {}, "reinitialisation": {}})");
   const Method m = parsed(text).method;
-  ASSERT_TRUE(m.diffusion && m.viscosity && m.wall_friction && m.reinitialisation);
+  ASSERT_TRUE(m.diffusion && m.viscosity && m.wall_artificial_viscosity && m.reinitialisation);
   EXPECT_EQ(m.diffusion->delta, 0.1);
   EXPECT_EQ(m.viscosity->alpha, 0.02);
-  EXPECT_EQ(m.wall_friction->epsilon, 0.01);
+  EXPECT_EQ(m.wall_artificial_viscosity->epsilon, 0.01);
   EXPECT_EQ(m.reinitialisation->interval, 20);
 }
 

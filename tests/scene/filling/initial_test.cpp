@@ -240,10 +240,10 @@ TEST(InitialParticles, AreMissedWhereAnObstacleTakesAWholeRegion) {
 TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
   json text = base_scene();
   const Particles lattice = create_particles(parsed(text)).state.particles;
-  text["jitter"] = {{"amplitude", 0.1}, {"seed", 1}};
+  text["perturbation"] = {{"amplitude", 0.1}, {"seed", 1}};
   const Particles first = create_particles(parsed(text)).state.particles;
   EXPECT_EQ(create_particles(parsed(text)).state.particles.x, first.x);
-  text["jitter"]["seed"] = 2;
+  text["perturbation"]["seed"] = 2;
   const Particles second = create_particles(parsed(text)).state.particles;
 
   ASSERT_EQ(first.size(), lattice.size());

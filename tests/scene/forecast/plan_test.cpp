@@ -41,8 +41,8 @@ TEST(Plan, LeavesOutWhatAnEmptySceneDoesNotName) {
   const Plan p =
       plan(parsed(testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}})));
   EXPECT_THAT(names(p.passes_left_out),
-              IsSupersetOf({"physical_viscosity", "wall_pressure", "wall_friction", "wall_drag",
-                            "gravity", "reinitialisation", "sample"}));
+              IsSupersetOf({"laminar_viscosity", "wall_pressure", "wall_artificial_viscosity",
+                            "wall_shear", "gravity", "reinitialisation", "sample"}));
   EXPECT_THAT(names(p.passes), IsSupersetOf({"sort", "continuity", "momentum", "update",
                                              "density_diffusion", "artificial_viscosity"}));
   EXPECT_THAT(names(p.files_left_out), IsSupersetOf({"series", "frames"}));
@@ -52,15 +52,16 @@ TEST(Plan, GivesTheKeyOrTheSchemeAsTheReason) {
   json text = base_scene();
   text["numerics"] =
       json::parse(R"({"scheme": "recommended", "artificial_viscosity": {"alpha": 0.1},
-      "density_diffusion": null, "wall_friction": {}})");
+      "density_diffusion": null, "wall_artificial_viscosity": {}})");
   const Plan p = plan(parsed(text));
   EXPECT_EQ(reason(p.passes, "wall_pressure"), "key tank");
   EXPECT_EQ(reason(p.passes, "gravity"), "key gravity");
-  EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
+  EXPECT_EQ(reason(p.passes, "wall_artificial_viscosity"),
+            "key numerics.wall_artificial_viscosity");
   EXPECT_EQ(reason(p.passes, "particle_shifting"), "scheme recommended");
   EXPECT_EQ(reason(p.passes_left_out, "density_diffusion"), "null at numerics.density_diffusion");
   EXPECT_EQ(reason(p.passes_left_out, "reinitialisation"), "scheme recommended");
-  EXPECT_EQ(reason(p.passes_left_out, "wall_drag"),
+  EXPECT_EQ(reason(p.passes_left_out, "wall_shear"),
             "scheme recommended, but excluded by another key");
 }
 
@@ -76,37 +77,38 @@ TEST(Plan, SaysWhatTheWordOfTheSchemeStandsFor) {
   EXPECT_EQ(said["artificial_viscosity.beta"], "0.5 [scheme recommended]");
   EXPECT_EQ(said["courant"], "0.5 [key numerics.courant]");
   EXPECT_EQ(said["kernel"], "wendland_c2 [scheme recommended]");
-  EXPECT_EQ(said["wall_friction"], "none [scheme recommended]");
+  EXPECT_EQ(said["wall_artificial_viscosity"], "none [scheme recommended]");
   EXPECT_EQ(said.size(), 15U) << "every number and word of the method, once";
 }
 
 TEST(Plan, RunsWhatASceneNames) {
   json text = base_scene();
-  text["numerics"] = json::parse(R"({"scheme": "paper", "wall_friction": {}})");
+  text["numerics"] = json::parse(R"({"scheme": "paper", "wall_artificial_viscosity": {}})");
   text["sensors"] = json::parse(R"([{"name": "e", "kind": "energy", "interval": 0.1}])");
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   const Plan p = plan(parsed(text));
   EXPECT_THAT(names(p.passes_left_out),
-              ElementsAre("packing", "physical_viscosity", "wall_drag", "particle_shifting"))
-      << "which may not stand beside wall_friction, or this integrator";
-  EXPECT_EQ(reason(p.passes, "wall_friction"), "key numerics.wall_friction");
+              ElementsAre("packing", "laminar_viscosity", "wall_shear", "particle_shifting"))
+      << "which may not stand beside wall_artificial_viscosity, or this integrator";
+  EXPECT_EQ(reason(p.passes, "wall_artificial_viscosity"),
+            "key numerics.wall_artificial_viscosity");
   EXPECT_EQ(reason(p.passes, "gate"), "key gate");
-  text["numerics"].erase("wall_friction");
-  text["numerics"]["physical_viscosity"] = json::object();
-  EXPECT_EQ(reason(plan(parsed(text)).passes, "physical_viscosity"),
-            "key numerics.physical_viscosity");
-  text["numerics"].erase("physical_viscosity");
-  text["numerics"]["wall_drag"] = json::object();
+  text["numerics"].erase("wall_artificial_viscosity");
+  text["numerics"]["laminar_viscosity"] = json::object();
+  EXPECT_EQ(reason(plan(parsed(text)).passes, "laminar_viscosity"),
+            "key numerics.laminar_viscosity");
+  text["numerics"].erase("laminar_viscosity");
+  text["numerics"]["wall_shear"] = json::object();
   text["numerics"]["integrator"] = "kick_drift_kick";
   text["numerics"]["particle_shifting"] = json::object();
-  EXPECT_EQ(reason(plan(parsed(text)).passes, "wall_drag"), "key numerics.wall_drag");
+  EXPECT_EQ(reason(plan(parsed(text)).passes, "wall_shear"), "key numerics.wall_shear");
   EXPECT_EQ(reason(plan(parsed(text)).passes, "particle_shifting"),
             "key numerics.particle_shifting");
 }
 
 TEST(Plan, LeavesOutWhatHoldsAtWallsWhereThereIsNoWall) {
   json text = testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}});
-  for (const char* term : {"wall_friction", "wall_drag"}) {
+  for (const char* term : {"wall_artificial_viscosity", "wall_shear"}) {
     text["numerics"] = {{"scheme", "paper"}, {term, json::object()}};
     const Plan p = plan(parsed(text));
     EXPECT_THAT(names(p.passes), Not(Contains(term)));

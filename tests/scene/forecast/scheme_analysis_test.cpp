@@ -31,7 +31,7 @@ std::vector<Method> schemes() {
   all[5].viscosity->epsilon = 0.1;
   all[6].diffusion->delta = 0.2;
   all[7].diffusion.reset();
-  all[8].physical_viscosity = PhysicalViscosity{.nu = 0.01};
+  all[8].laminar_viscosity = LaminarViscosity{.nu = 0.01};
   return all;
 }
 

@@ -39,7 +39,7 @@ constexpr const char* kNineKeys = R"({
     "kernel": "wendland_c2", "integrator": "kick_drift_kick", "courant": 1.0, "precision": "mixed",
     "density_diffusion": {"kind": "fourtakas", "delta": 0.1},
     "artificial_viscosity": {"alpha": 0.02, "epsilon": 0.01, "beta": 0.5},
-    "wall_drag": {"coefficient": 0.01}, "wall_pressure": "clamped",
+    "wall_shear": {"coefficient": 0.01}, "wall_pressure": "clamped",
     "particle_shifting": {"coefficient": 2}})";
 
 TEST(Scheme, RecommendedIsTheDefaultAndStandsForNineKeys) {
@@ -59,7 +59,7 @@ TEST(Scheme, PaperStandsForWhatThePaperPrints) {
   EXPECT_EQ(m.viscosity->beta, 0.0);
   EXPECT_EQ(m.reinitialisation->interval, 20);
   EXPECT_EQ(m.wall_pressure, WallPressure::extrapolated);
-  EXPECT_FALSE(m.wall_drag || m.shifting || m.wall_friction || m.physical_viscosity);
+  EXPECT_FALSE(m.wall_shear || m.shifting || m.wall_artificial_viscosity || m.laminar_viscosity);
   EXPECT_EQ(m.smoothing_length, 0.05);
 }
 
@@ -80,10 +80,10 @@ TEST(Scheme, ANamedKeySwitchesOffWhatItExcludes) {
       method_with(R"({"scheme": "recommended", "integrator": "modified_leap_frog"})");
   EXPECT_FALSE(slow.shifting);
   EXPECT_EQ(slow.courant, 0.25);
-  for (const char* term : {"wall_friction", "physical_viscosity"}) {
+  for (const char* term : {"wall_artificial_viscosity", "laminar_viscosity"}) {
     json scene = base_scene();
     scene["numerics"] = {{"scheme", "recommended"}, {term, json::object()}};
-    EXPECT_FALSE(parsed(scene).method.wall_drag) << term;
+    EXPECT_FALSE(parsed(scene).method.wall_shear) << term;
   }
   EXPECT_EQ(method_with(R"({"scheme": "recommended", "kernel": "truncated_gaussian"})").support(),
             method_with(R"({"scheme": "recommended"})").support());
@@ -93,9 +93,9 @@ TEST(Scheme, WhatIsNamedAndExcludedIsAProblemThatSaysWhatToWrite) {
   const auto shifting = parse(with_numerics(R"({"scheme": "paper", "particle_shifting": {}})"));
   EXPECT_THAT(message_at(shifting, "/numerics/particle_shifting"),
               HasSubstr(R"("integrator": "kick_drift_kick")"));
-  const auto both =
-      parse(with_numerics(R"({"scheme": "recommended", "wall_friction": {}, "wall_drag": {}})"));
-  EXPECT_THAT(pointers(both), ElementsAre("/numerics/wall_friction"));
+  const auto both = parse(with_numerics(
+      R"({"scheme": "recommended", "wall_artificial_viscosity": {}, "wall_shear": {}})"));
+  EXPECT_THAT(pointers(both), ElementsAre("/numerics/wall_artificial_viscosity"));
 }
 
 TEST(Scheme, SuitsScenesWithoutWallsAndGravity) {
@@ -112,8 +112,8 @@ TEST(Scheme, NullIsNoValueOfWhatIsNoTerm) {
               ElementsAre("/numerics/scheme"));
   EXPECT_THAT(pointers(parse(with_numerics(R"({"scheme": "papers"})"))),
               ElementsAre("/numerics/scheme"));
-  EXPECT_TRUE(takes_null("/numerics/wall_drag"));
-  for (const char* key : {"/numerics/courant", "/numerics", "/output", "/numerics/wall_drag/x"}) {
+  EXPECT_TRUE(takes_null("/numerics/wall_shear"));
+  for (const char* key : {"/numerics/courant", "/numerics", "/output", "/numerics/wall_shear/x"}) {
     EXPECT_FALSE(takes_null(key)) << key;
   }
 }

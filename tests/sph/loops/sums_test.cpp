@@ -31,9 +31,9 @@ std::vector<Method> all_combinations_of_terms(KernelKind kernel) {
     if ((rest & 2) == 0) m.gravity.setZero();
     if ((rest & 4) == 0) m.wall_pressure = WallPressure::clamped;
     const int drag = rest / 8;
-    if (drag != 1) m.wall_friction.reset();
-    if (drag == 2) m.physical_viscosity = PhysicalViscosity{0.3};
-    if (drag == 3) m.wall_drag = WallDrag{0.2};
+    if (drag != 1) m.wall_artificial_viscosity.reset();
+    if (drag == 2) m.laminar_viscosity = LaminarViscosity{0.3};
+    if (drag == 3) m.wall_shear = WallShear{0.2};
     methods.push_back(m);
   }
   return methods;
@@ -44,7 +44,7 @@ struct Scene {
   std::vector<Vec> walls;
 };
 
-Scene jittered_tank(std::uint64_t seed) {
+Scene perturbed_tank(std::uint64_t seed) {
   Dice dice(seed);
   const Vec corner(-0.73, -0.51);
   return {random_block(dice, corner, 13, 9, 0.1, 0.3, 2.0, 20.0), walls_around(corner, 13, 9, 0.1)};
@@ -56,9 +56,9 @@ std::string describe(const Method& m, const std::string& target) {
          (m.diffusion ? std::to_string(static_cast<int>(m.diffusion->kind)) : "none") +
          ", viscosity " + std::to_string(m.viscosity.has_value()) + " (beta " +
          std::to_string(m.viscosity ? m.viscosity->beta : 0.0) + "), friction " +
-         std::to_string(m.wall_friction.has_value()) + ", physical viscosity " +
-         std::to_string(m.physical_viscosity.has_value()) + ", wall drag " +
-         std::to_string(m.wall_drag.has_value()) + ", gravity " +
+         std::to_string(m.wall_artificial_viscosity.has_value()) + ", physical viscosity " +
+         std::to_string(m.laminar_viscosity.has_value()) + ", wall drag " +
+         std::to_string(m.wall_shear.has_value()) + ", gravity " +
          std::to_string(!m.gravity.isZero()) + ", walls clamped " +
          std::to_string(m.wall_pressure == WallPressure::clamped);
 }
@@ -126,17 +126,17 @@ void expect_sums(Method m, const Scene& scene) {
 }
 
 TEST(PairSums, EqualThePlainDoubleLoopForAllTermsBesideWalls) {
-  const Scene scene = jittered_tank(1);
+  const Scene scene = perturbed_tank(1);
   for (const KernelKind kernel : kKernels) {
     for (const Method& m : all_combinations_of_terms(kernel)) expect_sums(m, scene);
   }
 }
 
 TEST(PairSums, EqualThePlainDoubleLoopForAllTermsWithoutWalls) {
-  const Scene scene{jittered_tank(2).fluid, {}};
+  const Scene scene{perturbed_tank(2).fluid, {}};
   for (const KernelKind kernel : kKernels) {
     for (const Method& m : all_combinations_of_terms(kernel)) {
-      if (m.wall_friction || m.wall_pressure == WallPressure::clamped) continue;
+      if (m.wall_artificial_viscosity || m.wall_pressure == WallPressure::clamped) continue;
       expect_sums(m, scene);
     }
   }
@@ -161,7 +161,7 @@ TEST(PairSums, EqualThePlainDoubleLoopWhereParticlesLieAtRandom) {
 }
 
 TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
-  const Scene scene = jittered_tank(5);
+  const Scene scene = perturbed_tank(5);
   // The right wall, x > 0.57 m: after 0.14 s its edge is between the fourth and the fifth row.
   Method m = full_method();
   m.reinitialisation.reset();
@@ -264,7 +264,7 @@ void expect_kick_drift_kick_reinitialisation(const Method& m, const Scene& scene
 
 TEST(PairSums, ReinitialisationEqualsThePlainDoubleLoop) {
   for (const bool walls : {true, false}) {
-    Scene scene = jittered_tank(3);
+    Scene scene = perturbed_tank(3);
     if (!walls) scene.walls.clear();
     for (const KernelKind kernel : kKernels) {
       for (const Precision precision : kPrecisions) {

@@ -13,7 +13,7 @@ Method free_method(Integrator integrator) {
   Method m = full_method();
   m.integrator = integrator;
   m.gravity.setZero();
-  m.wall_friction.reset();
+  m.wall_artificial_viscosity.reset();
   return m;
 }
 

@@ -128,8 +128,8 @@ TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
 
 /// The tank's right wall goes up by about half of its height within 60 steps.
 Method lifting(Method m) {
-  m.physical_viscosity = PhysicalViscosity{0.01};
-  m.wall_friction.reset();
+  m.laminar_viscosity = LaminarViscosity{0.01};
+  m.wall_artificial_viscosity.reset();
   m.lifted_wall = LiftedWall{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
   return m;
 }

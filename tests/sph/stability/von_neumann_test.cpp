@@ -90,7 +90,7 @@ TEST(LatticeStability, PhysicalViscosityAllowsTwoOverItsFastestRateAndHalfOfThat
   const double rate = kTwoNu * 2 * std::numbers::inv_pi * 2 * (4 * std::exp(-1) + 8 * std::exp(-5));
   for (const Integrator integrator : kIntegrators) {
     Method m = bare(integrator);
-    m.physical_viscosity = PhysicalViscosity{0.5 * kTwoNu * m.sound_speed * m.smoothing_length};
+    m.laminar_viscosity = LaminarViscosity{0.5 * kTwoNu * m.sound_speed * m.smoothing_length};
     const CourantLimits limits = courant_limits(m, Surface::free);
     const double on_axis = integrator == Integrator::kick_drift_kick ? 2.0 : 1.0;
     EXPECT_NEAR(limits.viscosity, on_axis / rate, 0.002 * on_axis / rate);

@@ -180,9 +180,9 @@ TEST(ViscosityTerm, IsNotSummedAgainstWalls) {
   EXPECT_EQ(rates.acceleration[0].norm(), 0.0);
 }
 
-TEST(WallFrictionTerm, ActsAgainstWallsOnly) {
+TEST(WallArtificialViscosityTerm, ActsAgainstWallsOnly) {
   Method m = plain_method();
-  m.wall_friction = WallFriction{0.05, 0.02};
+  m.wall_artificial_viscosity = WallArtificialViscosity{0.05, 0.02};
   Fluid fluid;
   fluid.add({0.0, 0.5 * kH}, {1.0, -2.0}, 0.0);
   fluid.add({1.0, 1.0}, {1.0, 0.0}, 0.0);
@@ -195,9 +195,9 @@ TEST(WallFrictionTerm, ActsAgainstWallsOnly) {
   EXPECT_EQ(rates.acceleration[2].norm(), 0.0);
 }
 
-TEST(PhysicalViscosityTerm, DragsAPairTogetherAndAParticleToRestAtAWall) {
+TEST(LaminarViscosityTerm, DragsAPairTogetherAndAParticleToRestAtAWall) {
   Method m = plain_method();
-  m.physical_viscosity = PhysicalViscosity{0.3};
+  m.laminar_viscosity = LaminarViscosity{0.3};
   Fluid fluid;
   fluid.add({0.0, 0.0}, {3.0, 1.0}, 0.0);
   fluid.add({kH, 0.0}, {-1.0, 1.0}, 0.0);
@@ -212,12 +212,12 @@ TEST(PhysicalViscosityTerm, DragsAPairTogetherAndAParticleToRestAtAWall) {
   EXPECT_CLOSE(rates.acceleration[2].y(), 5.0 * drag);
 }
 
-TEST(PhysicalViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
+TEST(LaminarViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
   // nu d2u/dy2 = -2 nu for u = -y^2; on a lattice of dx = h/1.5 the sum is that to 2 %.
   Method m = plain_method();
   m.kernel = KernelKind::wendland_c2;
   m.spacing = m.smoothing_length / 1.5;
-  m.physical_viscosity = PhysicalViscosity{0.3};
+  m.laminar_viscosity = LaminarViscosity{0.3};
   Fluid fluid;
   for (int row = -6; row <= 6; ++row) {
     for (int column = -6; column <= 6; ++column) {
@@ -230,9 +230,9 @@ TEST(PhysicalViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
   EXPECT_NEAR(middle.y(), 0.0, 1e-9);
 }
 
-TEST(WallDragTerm, ActsAgainstWallsOnly) {
+TEST(WallShearTerm, ActsAgainstWallsOnly) {
   Method m = plain_method();
-  m.wall_drag = WallDrag{0.1};
+  m.wall_shear = WallShear{0.1};
   Fluid fluid;
   fluid.add({1.0, 1.0}, {1.0, 0.0}, 0.0);
   fluid.add({1.0 + kH, 1.0}, {-1.0, 3.0}, 0.0);
@@ -261,13 +261,13 @@ double stress_at_wall(const Method& m, double speed) {
   return force / m.spacing;
 }
 
-TEST(WallDragTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
+TEST(WallShearTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
   for (const KernelKind kernel : {KernelKind::truncated_gaussian, KernelKind::wendland_c2}) {
     for (const double spacing : {kH / 1.5, kH / 1.2}) {
       Method m = plain_method();
       m.kernel = kernel;
       m.spacing = spacing;
-      m.wall_drag = WallDrag{0.1};
+      m.wall_shear = WallShear{0.1};
       for (const double speed : {0.5, 3.0}) {
         const double stress = 0.1 / 2.0 * kRho0 * speed * speed;
         EXPECT_NEAR(stress_at_wall(m, speed), stress, 1e-12 * stress);
