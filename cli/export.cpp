@@ -13,7 +13,7 @@
 #include "engine/store/disk/apart.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/publish.hpp"
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 namespace {
@@ -28,8 +28,8 @@ struct ExportArguments {
   ExportFormat format = ExportFormat::vtkhdf;
 };
 
-Frame read_harmless_frame(const fs::path& path) {
-  return read_harmless(path, [&] { return read_frame(path); });
+Snapshot read_harmless_snapshot(const fs::path& path) {
+  return read_harmless(path, [&] { return read_snapshot(path); });
 }
 
 /// A file for each frame, and one that gives ParaView their times. Files are named beside each
@@ -37,7 +37,7 @@ Frame read_harmless_frame(const fs::path& path) {
 void export_vtk(const std::vector<fs::path>& frames, const fs::path& output) {
   std::vector<std::pair<std::string, double>> files;
   for (const fs::path& path : frames) {
-    const Frame frame = read_harmless_frame(path);
+    const Snapshot frame = read_harmless_snapshot(path);
     files.emplace_back(vtk_name(path), frame.time);
     write_vtk(output / files.back().first, frame);
   }
@@ -48,7 +48,7 @@ void export_vtk(const std::vector<fs::path>& frames, const fs::path& output) {
 
 void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
   for (const fs::path& path : frames) {
-    const Frame frame = read_harmless_frame(path);
+    const Snapshot frame = read_harmless_snapshot(path);
     std::string text = "time_s,id,x_m,y_m,vx_m_s,vy_m_s,pressure_Pa\n";
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
       const Vec place = frame.position(i);
@@ -60,9 +60,9 @@ void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
   fmt::print("{}: {} files\n", output.string(), frames.size());
 }
 
-void export_frames(const ExportArguments& arguments) {
+void export_snapshots(const ExportArguments& arguments) {
   const JobData job(arguments.folder);
-  const std::vector<fs::path> frames = job.paths().frame_files();
+  const std::vector<fs::path> frames = job.paths().snapshot_files();
   if (frames.empty()) {
     throw CommandEnd(ExitCode::usage,
                      fmt::format("{} has no frames: its scene has no key output.frames, or it did "
@@ -96,7 +96,7 @@ void add_export(CLI::App& app) {
       ->transform(one_of(formats));
   verb->add_option("--output", arguments->output, "Where to; by default the job's frames folder");
   verb->footer("Example: sluice export dambreak-quick");
-  verb->callback([arguments] { export_frames(*arguments); });
+  verb->callback([arguments] { export_snapshots(*arguments); });
 }
 
 }  // namespace sluice

@@ -50,7 +50,7 @@ std::string formatted(const ReportArguments& arguments, const std::filesystem::p
     case ReportFormat::markdown:
       return report_markdown(report);
     case ReportFormat::html:
-      return report_html(report, job.series, picture_frames(folder, report));
+      return report_html(report, job.series, picture_snapshots(folder, report));
     case ReportFormat::apng:
       if (std::string moving = animation_png(folder, report, arguments.colour); !moving.empty()) {
         return moving;
@@ -103,8 +103,8 @@ void report_folder(const ReportArguments& arguments, const std::filesystem::path
 }
 
 /// The snapshots that the report shows.
-std::vector<std::filesystem::path> frames_shown(const ReportArguments& arguments,
-                                                const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> snapshots_shown(const ReportArguments& arguments,
+                                                   const std::filesystem::path& folder) {
   const ReportFormat format = format_of(arguments);
   const bool page = format == ReportFormat::html || !arguments.output.empty();
   std::vector<std::filesystem::path> frames;
@@ -120,7 +120,7 @@ void report_of_service(const ReportArguments& arguments) {
   ServiceClient service(arguments.service);
   FetchedJob job(service, job_named(service, arguments.target));
   try {
-    job.fetch_frames(service, frames_shown(arguments, job.folder()));
+    job.fetch_snapshots(service, snapshots_shown(arguments, job.folder()));
     report_folder(arguments, job.folder());
   } catch (const StorageError& error) {
     throw StorageError(error.fault(), job.in_users_words(error.what()));

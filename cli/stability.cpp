@@ -100,7 +100,7 @@ void run_suite(const StabilityArguments& arguments) {
   // before its verdicts are told.
   [[maybe_unused]] static const SignalRequests& signals = *new SignalRequests;
   const SuiteFolder folder(arguments.folder);
-  StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full, scheme);
+  CaseRunner bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full, scheme);
   std::vector<JudgedCase> judged;
   for (const StabilityCase& each : cases) {
     const std::string_view cause = arguments.scheme == "paper" ? each.paper_miss : "";
@@ -130,8 +130,8 @@ void run_order(const StabilityArguments& arguments) {
   // before its verdicts are told.
   [[maybe_unused]] static const SignalRequests& signals = *new SignalRequests;
   const SuiteFolder folder(arguments.folder);
-  StabilityBench bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full,
-                       chosen_scheme(arguments.scheme));
+  CaseRunner bench(folder.path(), arguments.quick ? SuiteForm::quick : SuiteForm::full,
+                   chosen_scheme(arguments.scheme));
   const std::vector<DropPoint> points = run_drops(bench);
   write_if_asked(arguments.json, drop_json(points).dump(2) + "\n");
   fmt::print("{}", table_text(drop_table(points)));

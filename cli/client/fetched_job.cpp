@@ -14,8 +14,8 @@
 #include "cli/verbs.hpp"
 #include "engine/store/disk/apart.hpp"
 #include "engine/store/disk/errors.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/job_folder.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 namespace {
@@ -41,7 +41,7 @@ void write_file(const fs::path& path, const std::string& bytes) {
 }
 
 /// Whether the name is one that JobPaths finds again, and leads nowhere else.
-bool is_frame_name(const std::string& name) {
+bool is_snapshot_name(const std::string& name) {
   return name.starts_with("frame-") && name.ends_with(".h5") && name.find('/') == name.npos;
 }
 
@@ -74,13 +74,13 @@ void fetch(ServiceClient& service, const std::string& id, const fs::path& folder
   }
   fs::create_directory(paths.frames());
   for (const std::string& name : there) {
-    if (is_frame_name(name)) write_file(paths.frames() / name, "");
+    if (is_snapshot_name(name)) write_file(paths.frames() / name, "");
   }
 }
 
-bool is_harmless_frame(const fs::path& path) {
+bool is_harmless_snapshot(const fs::path& path) {
   try {
-    require_harmless(path, [&] { static_cast<void>(read_frame(path)); });
+    require_harmless(path, [&] { static_cast<void>(read_snapshot(path)); });
     return true;
   } catch (const StorageError&) {
     return false;
@@ -100,11 +100,11 @@ FetchedJob::FetchedJob(ServiceClient& service, const std::string& id)
   }
 }
 
-void FetchedJob::fetch_frames(ServiceClient& service, const std::vector<fs::path>& frames) {
+void FetchedJob::fetch_snapshots(ServiceClient& service, const std::vector<fs::path>& frames) {
   for (const fs::path& path : frames) {
     const std::string name = path.filename().string();
     write_file(path, service.get(job_target(id_, "/files/" + percent_encoded(name))).body);
-    if (!is_harmless_frame(path)) write_file(path, "");
+    if (!is_harmless_snapshot(path)) write_file(path, "");
   }
 }
 

@@ -23,7 +23,7 @@ class FetchedJob {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
   /// Fetches these files of the folder. One that is no snapshot stays empty.
-  void fetch_frames(ServiceClient& service, const std::vector<std::filesystem::path>& frames);
+  void fetch_snapshots(ServiceClient& service, const std::vector<std::filesystem::path>& frames);
 
   /// A message with the job's id in place of the folder's name, which is nobody's business.
   [[nodiscard]] std::string in_users_words(std::string message) const;

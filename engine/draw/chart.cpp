@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 6> kInkNames{"simulation", "experiment", 
 std::string_view class_of(Ink ink) { return kInkNames[static_cast<std::size_t>(ink)]; }
 
 /// From values to places in the view box.
-struct Frame2d {
+struct PlotArea {
   const Chart& chart;
   double top;
   double left = kLeft;
@@ -95,7 +95,7 @@ std::string path_of(const std::vector<Point>& points) {
 double tame(double place) { return std::clamp(place, -2000.0, 3000.0); }
 
 /// One path per stretch without NaN.
-std::string line_paths(const Frame2d& frame, const std::vector<double>& x,
+std::string line_paths(const PlotArea& frame, const std::vector<double>& x,
                        const std::vector<double>& y) {
   std::string paths;
   std::vector<Point> points;
@@ -116,7 +116,7 @@ std::string line_paths(const Frame2d& frame, const std::vector<double>& x,
   return paths;
 }
 
-std::string band_svg(const Frame2d& frame, const ChartBand& band) {
+std::string band_svg(const PlotArea& frame, const ChartBand& band) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < band.x.size(); ++i) {
     points.push_back({frame.x(band.x[i]), tame(frame.y(band.high[i]))});
@@ -145,7 +145,7 @@ std::string bar_svg(Ink ink, double x, double from, double to) {
                      class_of(ink), x - 4.0, from, to);
 }
 
-std::string marks_svg(const Frame2d& frame, const ChartMarks& marks) {
+std::string marks_svg(const PlotArea& frame, const ChartMarks& marks) {
   std::string text;
   for (std::size_t i = 0; i < marks.x.size(); ++i) {
     const bool drawn = std::isfinite(marks.y[i]) && marks.x[i] >= frame.chart.x.low &&
@@ -228,7 +228,7 @@ double left_of(const Chart& chart) {
   return std::max(kLeft, kYLabel + kDigit * static_cast<double>(longest));
 }
 
-std::string axes_svg(const Frame2d& frame) {
+std::string axes_svg(const PlotArea& frame) {
   std::string text;
   for (const double place : ticks(frame.chart.x, 8)) {
     const double x = frame.x(place);
@@ -252,7 +252,7 @@ std::string axes_svg(const Frame2d& frame) {
   return text;
 }
 
-std::string notes_svg(const Frame2d& frame) {
+std::string notes_svg(const PlotArea& frame) {
   std::string text;
   double y = frame.bottom() + kBottom + 10.0;
   for (const std::string& note : frame.chart.notes) {
@@ -262,12 +262,12 @@ std::string notes_svg(const Frame2d& frame) {
   return text;
 }
 
-std::string frame_rectangle(const Frame2d& frame) {
+std::string frame_rectangle(const PlotArea& frame) {
   return fmt::format("x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", frame.left,
                      frame.top, kWidth - frame.left - kRight, kPlotHeight);
 }
 
-std::string content_svg(const Frame2d& frame) {
+std::string content_svg(const PlotArea& frame) {
   std::string text;
   for (const ChartBand& band : frame.chart.bands) text += band_svg(frame, band);
   for (const ChartLine& line : frame.chart.lines) {
@@ -286,7 +286,7 @@ struct ChartBody {
 
 ChartBody body_of(const Chart& chart) {
   const Legend legend = lay_out(legend_of(chart));
-  const Frame2d frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0, left_of(chart)};
+  const PlotArea frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0, left_of(chart)};
   std::string text = fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
                                  escaped(chart.title));
   text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);

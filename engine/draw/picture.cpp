@@ -39,16 +39,16 @@ Rgb viridis(double share) {
   return {between(a.red, b.red), between(a.green, b.green), between(a.blue, b.blue)};
 }
 
-std::uint8_t index_of(double value, const PictureFrame& how) {
+std::uint8_t index_of(double value, const PictureView& how) {
   const double share = std::clamp((value - how.low) / (how.high - how.low), 0.0, 1.0);
   return static_cast<std::uint8_t>(kFirstColour +
                                    std::lround(share * (kLastColour - kFirstColour)));
 }
 
-double pixels_per_metre(const PictureFrame& how) { return how.width / how.view.size().x(); }
+double pixels_per_metre(const PictureView& how) { return how.width / how.view.size().x(); }
 
 /// The middle of a pixel, m.
-Vec place_of(int column, int row, const PictureFrame& how) {
+Vec place_of(int column, int row, const PictureView& how) {
   const double scale = pixels_per_metre(how);
   return {how.view.min.x() + (column + 0.5) / scale, how.view.max.y() - (row + 0.5) / scale};
 }
@@ -56,7 +56,7 @@ Vec place_of(int column, int row, const PictureFrame& how) {
 /// A canvas that remembers how near each pixel's particle is.
 class Canvas {
  public:
-  Canvas(Picture& picture, const PictureFrame& how)
+  Canvas(Picture& picture, const PictureView& how)
       : scale_(pixels_per_metre(how)),
         view_(how.view),
         radius_(0.75 * how.diameter),
@@ -98,7 +98,7 @@ class Canvas {
 
 /// Fills the pixels whose middle `holds`, within the rows and columns of `box`.
 template <class Holds>
-void fill(Picture& picture, const PictureFrame& how, const Box& box, std::uint8_t index,
+void fill(Picture& picture, const PictureView& how, const Box& box, std::uint8_t index,
           const Holds& holds) {
   const double scale = pixels_per_metre(how);
   const auto bounded = [](double at, int size) {
@@ -132,7 +132,7 @@ std::array<Rgb, 256> make_palette() {
 
 }  // namespace
 
-Picture blank_picture(const PictureFrame& how) {
+Picture blank_picture(const PictureView& how) {
   Picture picture;
   picture.width = how.width;
   picture.height =
@@ -142,7 +142,7 @@ Picture blank_picture(const PictureFrame& how) {
   return picture;
 }
 
-Picture draw_solids(const Scene& scene, const PictureFrame& how) {
+Picture draw_solids(const Scene& scene, const PictureView& how) {
   Picture picture = blank_picture(how);
   if (const auto& tank = scene.tank) {
     fill(picture, how, how.view, kSolid, [&](const Vec& p) {
@@ -157,7 +157,7 @@ Picture draw_solids(const Scene& scene, const PictureFrame& how) {
   return picture;
 }
 
-void draw_gate(Picture& picture, const Scene& scene, const PictureFrame& how, double time) {
+void draw_gate(Picture& picture, const Scene& scene, const PictureView& how, double time) {
   if (!scene.gate) return;
   const double edge = scene.gate->speed * time;
   if (!(edge < scene.gate->height)) return;
@@ -166,14 +166,14 @@ void draw_gate(Picture& picture, const Scene& scene, const PictureFrame& how, do
   fill(picture, how, box, kGate, [&](const Vec& p) { return box.contains(p); });
 }
 
-void draw_particles(Picture& picture, const Frame& frame, const PictureFrame& how) {
+void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& how) {
   Canvas canvas(picture, how);
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
     canvas.disc(frame.position(i), index_of(coloured_value(frame, i, how.quantity), how));
   }
 }
 
-float coloured_value(const Frame& frame, std::size_t i, Quantity quantity) {
+float coloured_value(const Snapshot& frame, std::size_t i, Quantity quantity) {
   return quantity == Quantity::pressure ? frame.pressure[i] : std::hypot(frame.vx[i], frame.vy[i]);
 }
 

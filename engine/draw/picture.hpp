@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/scene/model/scene.hpp"
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 
@@ -14,7 +14,7 @@ namespace sluice {
 enum class Quantity { pressure, speed };
 
 /// What a picture shows and how values become colours.
-struct PictureFrame {
+struct PictureView {
   Box view;               ///< m
   double diameter = 0.0;  ///< of a particle, m
   double low = 0.0;       ///< Pa or m/s that has the first colour, and everything below
@@ -39,20 +39,20 @@ struct Picture {
 };
 
 /// Tank walls and obstacles, without the gate: what all pictures of a scene begin with.
-[[nodiscard]] Picture draw_solids(const Scene& scene, const PictureFrame& how);
+[[nodiscard]] Picture draw_solids(const Scene& scene, const PictureView& how);
 
 /// What is left of the gate at `time` (s): above its lower edge.
-void draw_gate(Picture& picture, const Scene& scene, const PictureFrame& how, double time);
+void draw_gate(Picture& picture, const Scene& scene, const PictureView& how, double time);
 
 /// Each particle as a disc over what is there; where discs overlap, the nearest particle counts.
 /// Particles out of view or not finite are left out. `picture` has the size of `how`.
-void draw_particles(Picture& picture, const Frame& frame, const PictureFrame& how);
+void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& how);
 
 /// The picture that draw_solids() begins and the others go on with, empty.
-[[nodiscard]] Picture blank_picture(const PictureFrame& how);
+[[nodiscard]] Picture blank_picture(const PictureView& how);
 
 /// The value of each particle that its colour tells, Pa or m/s.
-[[nodiscard]] float coloured_value(const Frame& frame, std::size_t i, Quantity quantity);
+[[nodiscard]] float coloured_value(const Snapshot& frame, std::size_t i, Quantity quantity);
 
 struct Rgb {
   std::uint8_t red, green, blue;

@@ -37,7 +37,7 @@ void write_cells(Hdf5Writer& writer, std::size_t count) {
   writer.write(kRoot + "/Types", std::span<const std::uint8_t>(types), {count});
 }
 
-void write_points(Hdf5Writer& writer, const Frame& frame) {
+void write_points(Hdf5Writer& writer, const Snapshot& frame) {
   const std::size_t count = frame.x.size();
   std::vector<double> points;
   std::vector<float> velocities;
@@ -65,7 +65,7 @@ std::string vtk_name(const std::filesystem::path& frame) {
   return frame.filename().replace_extension(".hdf").string();
 }
 
-void write_vtk(const std::filesystem::path& path, const Frame& frame) {
+void write_vtk(const std::filesystem::path& path, const Snapshot& frame) {
   constexpr std::uint64_t kBytesPerParticle = 73;
   Hdf5Writer writer(frame.x.size() * kBytesPerParticle);
   writer.create_group(kRoot);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 
@@ -16,7 +16,7 @@ namespace sluice {
 /// each particle a vertex at its place in the plane z = 0, in double precision and absolute, with
 /// the point data `pressure` (Pa), `velocity` (m/s) and `id`. No trailer. Throws what publish
 /// throws.
-void write_vtk(const std::filesystem::path& path, const Frame& frame);
+void write_vtk(const std::filesystem::path& path, const Snapshot& frame);
 
 /// The text of a ParaView file series: which file shows which time, s.
 [[nodiscard]] std::string vtk_series_text(const std::vector<std::pair<std::string, double>>& files);

@@ -25,7 +25,7 @@ constexpr int kLength = 12000;  ///< ms
 std::optional<Box> moving_box(const std::vector<fs::path>& files) {
   std::optional<Box> box;
   for (const fs::path& path : files) {
-    const auto frame = try_frame(path);
+    const auto frame = try_snapshot(path);
     if (!frame) continue;
     const auto one = particle_box({&*frame, 1});
     if (!one) continue;
@@ -34,14 +34,14 @@ std::optional<Box> moving_box(const std::vector<fs::path>& files) {
   return box;
 }
 
-std::string end_text(const PictureFrame& how) {
+std::string end_text(const PictureView& how) {
   if (how.quantity == Quantity::speed) return fmt::format("{:.3g} m/s", how.high);
   return how.high >= 1000.0 ? fmt::format("{:.3g} kPa", how.high / 1000.0)
                             : fmt::format("{:.3g} Pa", how.high);
 }
 
 /// The picture with a strip above it: time left, scale of colours right.
-Picture with_strip(const Picture& picture, const PictureFrame& how, double time) {
+Picture with_strip(const Picture& picture, const PictureView& how, double time) {
   Picture whole;
   whole.width = std::max(picture.width, kLeast);
   whole.height = picture.height + kStrip;
@@ -75,14 +75,14 @@ Picture with_strip(const Picture& picture, const PictureFrame& how, double time)
 std::string animation_png(const fs::path& folder, const Report& report, Quantity quantity) {
   const Scene& scene = report.scene;
   std::vector<fs::path> files = spread_files(folder, kMostAnimated);
-  std::erase_if(files, [](const fs::path& path) { return !try_frame(path); });
+  std::erase_if(files, [](const fs::path& path) { return !try_snapshot(path); });
   if (files.empty()) return {};
-  PictureFrame how;
+  PictureView how;
   how.view = picture_view(scene, scene.tank ? std::nullopt : moving_box(files));
   how.diameter = scene.method.spacing;
   how.quantity = quantity;
   // The colours of the report's pictures.
-  how.high = colour_end(picture_frames(folder, report), quantity);
+  how.high = colour_end(picture_snapshots(folder, report), quantity);
   const Vec size = how.view.size();
   how.width =
       std::clamp(static_cast<int>(kAnimationHeight * size.x() / size.y()), 16, kAnimationWidth);
@@ -92,7 +92,7 @@ std::string animation_png(const fs::path& folder, const Report& report, Quantity
       count, static_cast<std::uint16_t>(std::clamp<std::uint32_t>(kLength / count, 20, 500)));
   for (const fs::path& path : files) {
     Picture picture = solids;
-    const Frame frame = read_frame(path);
+    const Snapshot frame = read_snapshot(path);
     draw_gate(picture, scene, how, frame.time);
     draw_particles(picture, frame, how);
     animation.add(with_strip(picture, how, frame.time));

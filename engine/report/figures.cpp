@@ -55,26 +55,26 @@ void fit(Chart& chart) {
 }
 
 /// The paper's figure 5: X = w/w0.
-Chart front_chart(const Scene& scene, const Evidence& evidence) {
+Chart front_chart(const Scene& scene, const Comparison& comparison) {
   const double ratio = scene.scales->height / scene.scales->width;
   const auto scaled = [&](Curve curve) {
     for (double& value : curve.value) value = 1.0 + value * ratio;
     return curve;
   };
-  const Curve measured = scaled(evidence.reference->front);
+  const Curve measured = scaled(comparison.reference->front);
   Chart chart;
   chart.id = "front";
   chart.title = "Surge front";
   chart.x = {std::string(kTimeLabel), 0.0, 3.0};
   chart.y.label = "X = w/w₀";
-  chart.lines.push_back(simulation_line(scaled(evidence.front->simulated)));
+  chart.lines.push_back(simulation_line(scaled(comparison.front->simulated)));
   chart.marks.push_back({"experiment", Ink::experiment, measured.time, measured.value, {}, {}, {}});
   fit_height(chart);
   return chart;
 }
 
 /// Figures 6 to 9: as far as the experiment goes, where the splashes of the rolling wave begin.
-Chart level_chart(const LevelEvidence& level, const Reference& reference, std::size_t number) {
+Chart level_chart(const LevelComparison& level, const Reference& reference, std::size_t number) {
   Chart chart;
   chart.id = id_of("level", number);
   chart.title = fmt::format("Surface level at {}", level.sensor);
@@ -112,9 +112,9 @@ ChartMarks peak_marks(const PressureReference& sensor, std::span<const double> t
 }
 
 /// Figures 10 to 13.
-Chart pressure_chart(const PressureEvidence& pressure, const Evidence& evidence,
+Chart pressure_chart(const PressureComparison& pressure, const Comparison& comparison,
                      std::size_t number) {
-  const Reference& reference = *evidence.reference;
+  const Reference& reference = *comparison.reference;
   const auto times = reference.pressure_times.centers();
   Chart chart;
   chart.id = id_of("pressure", number);
@@ -123,7 +123,8 @@ Chart pressure_chart(const PressureEvidence& pressure, const Evidence& evidence,
   chart.x = {std::string(kTimeLabel), 2.0, 8.0};
   chart.y.label = "P = p/(ρ₀ g h₀)";
   chart.lines.push_back(simulation_line(pressure.simulated));
-  if (evidence.shift) chart.lines[0].name += fmt::format(", shifted {:+.3f} T", *evidence.shift);
+  if (comparison.shift)
+    chart.lines[0].name += fmt::format(", shifted {:+.3f} T", *comparison.shift);
   for (const PressureReference& one : reference.pressures) {
     if (one.name != pressure.reference) continue;
     const std::vector<double> x(times.begin(), times.end());
@@ -145,8 +146,9 @@ std::string heading_of(const std::string& name, const std::string& quantity) {
   return name == quantity ? name : fmt::format("{}: {}", name, quantity);
 }
 
-Chart curve_chart(const CurveEvidence& one, const SeriesEvidence& evidence, std::size_t number) {
-  const bool plain = evidence.units == ReferenceUnits::si;
+Chart curve_chart(const CurveComparison& one, const SeriesComparison& comparison,
+                  std::size_t number) {
+  const bool plain = comparison.units == ReferenceUnits::si;
   Chart chart;
   chart.id = id_of("curve", number);
   const std::string quantity = quantity_of(one.kind);
@@ -198,17 +200,17 @@ Chart plain_chart(const Series& series, double tau, std::size_t number) {
 
 void add_experiment_charts(std::vector<Chart>& charts, std::set<std::string>& drawn,
                            const Report& report) {
-  const Evidence& evidence = *report.evidence;
-  if (evidence.front) {
-    charts.push_back(front_chart(report.scene, evidence));
-    drawn.insert(evidence.front->sensor);
+  const Comparison& comparison = *report.comparison;
+  if (comparison.front) {
+    charts.push_back(front_chart(report.scene, comparison));
+    drawn.insert(comparison.front->sensor);
   }
-  for (const LevelEvidence& level : evidence.levels) {
-    charts.push_back(level_chart(level, *evidence.reference, charts.size()));
+  for (const LevelComparison& level : comparison.levels) {
+    charts.push_back(level_chart(level, *comparison.reference, charts.size()));
     drawn.insert(level.sensor);
   }
-  for (const PressureEvidence& pressure : evidence.pressures) {
-    charts.push_back(pressure_chart(pressure, evidence, charts.size()));
+  for (const PressureComparison& pressure : comparison.pressures) {
+    charts.push_back(pressure_chart(pressure, comparison, charts.size()));
     drawn.insert(pressure.sensor);
   }
 }
@@ -217,17 +219,17 @@ void add_experiment_charts(std::vector<Chart>& charts, std::set<std::string>& dr
 
 std::vector<Chart> compared_charts(const Report& report) {
   std::vector<Chart> charts;
-  if (report.evidence && !report.evidence->pressures.empty()) {
-    for (const PressureEvidence& pressure : report.evidence->pressures) {
-      charts.push_back(pressure_chart(pressure, *report.evidence, charts.size()));
+  if (report.comparison && !report.comparison->pressures.empty()) {
+    for (const PressureComparison& pressure : report.comparison->pressures) {
+      charts.push_back(pressure_chart(pressure, *report.comparison, charts.size()));
     }
-  } else if (report.evidence) {
+  } else if (report.comparison) {
     std::set<std::string> drawn;
     add_experiment_charts(charts, drawn, report);
   }
-  if (report.series_evidence) {
-    for (const CurveEvidence& one : report.series_evidence->curves) {
-      charts.push_back(curve_chart(one, *report.series_evidence, charts.size()));
+  if (report.series_comparison) {
+    for (const CurveComparison& one : report.series_comparison->curves) {
+      charts.push_back(curve_chart(one, *report.series_comparison, charts.size()));
     }
   }
   return charts;
@@ -241,10 +243,10 @@ std::string report_svg(const Report& report) {
 std::vector<Chart> report_charts(const Report& report, const std::vector<Series>& series) {
   std::vector<Chart> charts;
   std::set<std::string> drawn;
-  if (report.evidence) add_experiment_charts(charts, drawn, report);
-  if (report.series_evidence) {
-    for (const CurveEvidence& one : report.series_evidence->curves) {
-      charts.push_back(curve_chart(one, *report.series_evidence, charts.size()));
+  if (report.comparison) add_experiment_charts(charts, drawn, report);
+  if (report.series_comparison) {
+    for (const CurveComparison& one : report.series_comparison->curves) {
+      charts.push_back(curve_chart(one, *report.series_comparison, charts.size()));
       drawn.insert(one.sensor);
     }
   }

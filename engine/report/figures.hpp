@@ -21,6 +21,6 @@ inline constexpr std::size_t kMostCharts = 64;
 /// A picture of each frame with axes in metres and a common scale of pressures, as SVGs that hold
 /// the pixels as PNG.
 [[nodiscard]] std::vector<std::string> picture_svgs(const Report& report,
-                                                    const std::vector<Frame>& frames);
+                                                    const std::vector<Snapshot>& frames);
 
 }  // namespace sluice

@@ -107,7 +107,7 @@ std::string image(const Plot& plot, const Picture& picture) {
 
 }  // namespace
 
-std::vector<std::string> picture_svgs(const Report& report, const std::vector<Frame>& frames) {
+std::vector<std::string> picture_svgs(const Report& report, const std::vector<Snapshot>& frames) {
   const Scene& scene = report.scene;
   const double gravity = scene.method.gravity.norm();
   const bool scaled = scene.scales && gravity > 0.0;
@@ -115,7 +115,7 @@ std::vector<std::string> picture_svgs(const Report& report, const std::vector<Fr
       scaled ? scene.method.reference_density * gravity * scene.scales->height : 1.0;
   const double time = scaled ? std::sqrt(scene.scales->height / gravity) : 1.0;
   const Plot plot = plot_of(picture_view(scene, particle_box(frames)));
-  PictureFrame how;
+  PictureView how;
   how.view = plot.view;
   how.diameter = scene.method.spacing;
   how.high = colour_end(frames, how.quantity);
@@ -123,7 +123,7 @@ std::vector<std::string> picture_svgs(const Report& report, const std::vector<Fr
   const Picture solids = draw_solids(scene, how);
   const bool kilo = !scaled && how.high >= 2000.0;
   std::vector<std::string> svgs;
-  for (const Frame& frame : frames) {
+  for (const Snapshot& frame : frames) {
     const std::string title =
         scaled ? fmt::format("T = {:.2f} (t = {:.4g} s)", frame.time / time, frame.time)
                : fmt::format("t = {:.4g} s", frame.time);

@@ -129,8 +129,8 @@ std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
 }  // namespace
 
 std::optional<double> Report::error() const {
-  if (series_evidence) return series_evidence->mean_relative_l2;
-  return evidence ? evidence->mean_relative_l2 : std::nullopt;
+  if (series_comparison) return series_comparison->mean_relative_l2;
+  return comparison ? comparison->mean_relative_l2 : std::nullopt;
 }
 
 Report make_report(const Scene& scene, const std::vector<Series>& series,
@@ -139,10 +139,10 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
   if (!report.outcome.is_object()) report.outcome = nullptr;
   report.sensors = summarise_all(series, tau);
   if (const Reference* reference = experiment_of(scene)) {
-    report.evidence = compare(scene, series, *reference, tau);
+    report.comparison = compare(scene, series, *reference, tau);
   }
   if (scene.reference && scene.reference->kind == ReferenceKind::series) {
-    report.series_evidence = compare_series(scene, series, *scene.reference, tau);
+    report.series_comparison = compare_series(scene, series, *scene.reference, tau);
   }
   report.facts = run_facts(report.outcome);
   report.conservation = conservation_of(series, report.facts);
@@ -184,10 +184,10 @@ Report report_of_folder(const std::filesystem::path& folder, double tau) {
   return make_report(job.scene, job.series, job.outcome, tau);
 }
 
-std::vector<Frame> picture_frames(const std::filesystem::path& folder, const Report& report) {
-  std::vector<Frame> frames;
+std::vector<Snapshot> picture_snapshots(const std::filesystem::path& folder, const Report& report) {
+  std::vector<Snapshot> frames;
   for (const std::filesystem::path& path : picture_files(folder, report)) {
-    if (auto frame = try_frame(path)) frames.push_back(*std::move(frame));
+    if (auto frame = try_snapshot(path)) frames.push_back(*std::move(frame));
   }
   return frames;
 }
@@ -203,7 +203,7 @@ void publish_report(const std::filesystem::path& folder, const std::filesystem::
   };
   put(paths.report(), report_json(report).dump(2) + "\n");
   put(paths.report_markdown(), report_markdown(report));
-  put(paths.report_html(), report_html(report, job.series, picture_frames(folder, report)));
+  put(paths.report_html(), report_html(report, job.series, picture_snapshots(folder, report)));
 }
 
 bool publish_missing_report(const std::filesystem::path& folder) {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/report/evidence.hpp"
+#include "engine/report/comparison.hpp"
 #include "engine/report/run_facts.hpp"
-#include "engine/report/series_evidence.hpp"
+#include "engine/report/series_comparison.hpp"
 #include "engine/scene/model/scene.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/series.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 
@@ -37,10 +37,11 @@ struct Report {
   Scene scene;
   double tau = kComparisonTau;  ///< time filter of pressures, s
   std::vector<SensorSummary> sensors;
-  std::optional<Evidence> evidence;  ///< against an experiment: the scene's own or one of its shape
-  std::optional<SeriesEvidence> series_evidence;  ///< against the curves of the scene
-  nlohmann::ordered_json outcome;                 ///< outcome.json; null while the run goes on
-  RunFacts facts;                                 ///< the same, read
+  std::optional<Comparison>
+      comparison;  ///< against an experiment: the scene's own or one of its shape
+  std::optional<SeriesComparison> series_comparison;  ///< against the curves of the scene
+  nlohmann::ordered_json outcome;                     ///< outcome.json; null while the run goes on
+  RunFacts facts;                                     ///< the same, read
   Conservation conservation;
 
   /// The mean relative L2 of the reference's sensors, whatever kind it is.
@@ -79,7 +80,7 @@ struct JobRecord {
 /// One page without scripts that loads nothing: the tables, every sensor's plot and a picture of
 /// each of `frames`, coloured by pressure. `series` as for make_report.
 [[nodiscard]] std::string report_html(const Report& report, const std::vector<Series>& series,
-                                      const std::vector<Frame>& frames);
+                                      const std::vector<Snapshot>& frames);
 
 /// The pressures over the experiment's, or whatever else is compared, two plots in a row; empty
 /// where nothing is compared.
@@ -87,8 +88,8 @@ struct JobRecord {
 
 /// The snapshots that the report's pictures show (engine/report/snapshots.hpp). One that cannot be
 /// read is left out.
-[[nodiscard]] std::vector<Frame> picture_frames(const std::filesystem::path& folder,
-                                                const Report& report);
+[[nodiscard]] std::vector<Snapshot> picture_snapshots(const std::filesystem::path& folder,
+                                                      const Report& report);
 
 /// Makes a report of a finished or running job and publishes report.json, report.md and report.html
 /// in `target`. Throws what report_of_folder() and publish_text() throw.

@@ -82,11 +82,11 @@ std::string pictures_html(const std::vector<std::string>& svgs) {
 }  // namespace
 
 std::string report_html(const Report& report, const std::vector<Series>& series,
-                        const std::vector<Frame>& frames) {
+                        const std::vector<Snapshot>& frames) {
   std::string text = head(report);
   text += charts_html(report_charts(report, series), series.size());
   text += pictures_html(picture_svgs(report, frames));
-  for (const Table& table : evidence_tables(report)) text += table_html(table);
+  for (const Table& table : comparison_tables(report)) text += table_html(table);
   for (const Table& table : run_tables(report)) text += table_html(table);
   return text + "</body>\n</html>\n";
 }

@@ -28,7 +28,7 @@ Json measures_json(const PressureMeasures& measures) {
               {"second_rise", value_of(measures.second_rise)}};
 }
 
-Json pressure_json(const PressureEvidence& one) {
+Json pressure_json(const PressureComparison& one) {
   return Json{{"sensor", one.sensor},
               {"reference", one.reference},
               {"height_m", one.height},
@@ -45,39 +45,40 @@ Json pressure_json(const PressureEvidence& one) {
               {"peak_place_in_band", value_of(one.place_in_band())}};
 }
 
-Json evidence_json(const Evidence& evidence) {
+Json comparison_json(const Comparison& comparison) {
   Json pressures = Json::array();
-  for (const PressureEvidence& one : evidence.pressures) pressures.push_back(pressure_json(one));
+  for (const PressureComparison& one : comparison.pressures)
+    pressures.push_back(pressure_json(one));
   Json levels = Json::array();
-  for (const LevelEvidence& one : evidence.levels) {
+  for (const LevelComparison& one : comparison.levels) {
     levels.push_back({{"sensor", one.sensor},
                       {"reference", one.reference},
                       {"rms_difference", value_of(one.rms_difference)}});
   }
   Json front;
-  if (evidence.front) {
-    front = {{"sensor", evidence.front->sensor},
-             {"rms_difference", value_of(evidence.front->rms_difference)},
-             {"delay", value_of(evidence.front->delay)}};
+  if (comparison.front) {
+    front = {{"sensor", comparison.front->sensor},
+             {"rms_difference", value_of(comparison.front->rms_difference)},
+             {"delay", value_of(comparison.front->delay)}};
   }
-  return Json{{"reference", evidence.reference->name},
-              {"title", evidence.reference->title},
-              {"citation", evidence.reference->citation},
+  return Json{{"reference", comparison.reference->name},
+              {"title", comparison.reference->title},
+              {"citation", comparison.reference->citation},
               {"units", "T = t sqrt(g/h0), P = p/(rho0 g h0), H = h/h0, front (w - w0)/h0"},
-              {"tau_s", evidence.tau},
-              {"time_unit_s", evidence.time_unit},
-              {"pressure_shift", value_of(evidence.shift)},
+              {"tau_s", comparison.tau},
+              {"time_unit_s", comparison.time_unit},
+              {"pressure_shift", value_of(comparison.shift)},
               {"comparison_window", {kComparisonWindow.from, kComparisonWindow.to}},
-              {"mean_relative_l2", value_of(evidence.mean_relative_l2)},
-              {"mean_relative_l2_not_shifted", value_of(evidence.mean_relative_l2_not_shifted)},
+              {"mean_relative_l2", value_of(comparison.mean_relative_l2)},
+              {"mean_relative_l2_not_shifted", value_of(comparison.mean_relative_l2_not_shifted)},
               {"pressures", std::move(pressures)},
               {"levels", std::move(levels)},
               {"front", std::move(front)}};
 }
 
-Json curves_json(const SeriesEvidence& evidence) {
+Json curves_json(const SeriesComparison& comparison) {
   Json curves = Json::array();
-  for (const CurveEvidence& one : evidence.curves) {
+  for (const CurveComparison& one : comparison.curves) {
     curves.push_back({{"sensor", one.sensor},
                       {"unit", one.unit},
                       {"relative_l2", value_of(one.relative_l2)},
@@ -85,12 +86,12 @@ Json curves_json(const SeriesEvidence& evidence) {
                       {"highest", value_of(one.simulated_peak)},
                       {"expected_highest", value_of(one.expected_peak)}});
   }
-  return Json{{"title", evidence.title},
-              {"citation", evidence.citation},
-              {"units", evidence.units == ReferenceUnits::si ? "si" : "dimensionless"},
-              {"tau_s", evidence.tau},
+  return Json{{"title", comparison.title},
+              {"citation", comparison.citation},
+              {"units", comparison.units == ReferenceUnits::si ? "si" : "dimensionless"},
+              {"tau_s", comparison.tau},
               {"shift", 0.0},
-              {"mean_relative_l2", value_of(evidence.mean_relative_l2)},
+              {"mean_relative_l2", value_of(comparison.mean_relative_l2)},
               {"curves", std::move(curves)}};
 }
 
@@ -171,9 +172,9 @@ Json report_json(const Report& report) {
               {"smoothing_length_m", report.scene.method.smoothing_length},
               {"tau_s", report.tau},
               {"sensors", std::move(sensors)}};
-  object["evidence"] = report.evidence ? evidence_json(*report.evidence) : Json(nullptr);
-  object["series_evidence"] =
-      report.series_evidence ? curves_json(*report.series_evidence) : Json(nullptr);
+  object["comparison"] = report.comparison ? comparison_json(*report.comparison) : Json(nullptr);
+  object["series_comparison"] =
+      report.series_comparison ? curves_json(*report.series_comparison) : Json(nullptr);
   object["error"] = value_of(report.error());
   object["cost"] = cost_json(report.facts);
   object["conservation"] = conservation_json(report.conservation);

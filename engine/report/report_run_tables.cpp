@@ -7,7 +7,7 @@
 #include "engine/run/guards.hpp"
 #include "engine/scene/forecast/plan.hpp"
 #include "engine/scene/model/vocabulary.hpp"
-#include "engine/sph/stability/crowding.hpp"
+#include "engine/sph/stability/neighbour_count.hpp"
 
 namespace sluice {
 namespace {

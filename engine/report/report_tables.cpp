@@ -31,12 +31,12 @@ std::string whole_percent(const std::optional<double>& share) {
 /// Rows of a table with a column per sensor.
 class PressureRows {
  public:
-  explicit PressureRows(const std::vector<PressureEvidence>& all) : all_(all) {}
+  explicit PressureRows(const std::vector<PressureComparison>& all) : all_(all) {}
 
   void add(std::string label, const std::string& who,
-           const std::function<std::string(const PressureEvidence&)>& text) {
+           const std::function<std::string(const PressureComparison&)>& text) {
     std::vector<std::string> row{std::move(label), who};
-    for (const PressureEvidence& one : all_) row.push_back(text(one));
+    for (const PressureComparison& one : all_) row.push_back(text(one));
     rows_.push_back(std::move(row));
   }
   void both(const std::string& label, const Getter& get) {
@@ -46,7 +46,7 @@ class PressureRows {
   std::vector<std::vector<std::string>> take() { return std::move(rows_); }
 
  private:
-  const std::vector<PressureEvidence>& all_;
+  const std::vector<PressureComparison>& all_;
   std::vector<std::vector<std::string>> rows_;
 };
 
@@ -63,17 +63,17 @@ void add_peaks(PressureRows& rows) {
            [](const auto& one) { return cell(peak_time(one.simulation.peak)); });
 }
 
-std::string shift_text(const Evidence& evidence) {
-  return evidence.shift ? fmt::format("{:+.3f}", *evidence.shift) : "-";
+std::string shift_text(const Comparison& comparison) {
+  return comparison.shift ? fmt::format("{:+.3f}", *comparison.shift) : "-";
 }
 
-Table pressure_table(const Evidence& evidence) {
-  const auto& all = evidence.pressures;
+Table pressure_table(const Comparison& comparison) {
+  const auto& all = comparison.pressures;
   Table table;
   table.title = "Pressures";
   table.note = "P = p/(rho0 g h0), T = t sqrt(g/h0)";
   table.head = {"", ""};
-  for (const PressureEvidence& one : all) table.head.push_back(one.sensor);
+  for (const PressureComparison& one : all) table.head.push_back(one.sensor);
   PressureRows rows(all);
   rows.add("height above the floor, mm", "",
            [](const auto& one) { return fmt::format("{:g}", one.height * 1e3); });
@@ -81,7 +81,7 @@ Table pressure_table(const Evidence& evidence) {
            [](const auto& one) { return fmt::format("{:g}", one.smoothing_length * 1e3); });
   rows.add("air around it, Pa (-: eq. 11)", "",
            [](const auto& one) { return cell(one.air_pressure); });
-  rows.add(fmt::format("relative L2, shifted by {} T", shift_text(evidence)), "",
+  rows.add(fmt::format("relative L2, shifted by {} T", shift_text(comparison)), "",
            [](const auto& one) { return cell(one.relative_l2); });
   rows.add("relative L2, not shifted", "",
            [](const auto& one) { return cell(one.relative_l2_not_shifted); });
@@ -96,29 +96,29 @@ Table pressure_table(const Evidence& evidence) {
   return table;
 }
 
-Table kinematics_table(const Evidence& evidence) {
+Table kinematics_table(const Comparison& comparison) {
   Table table;
   table.title = "Surface levels and surge front";
   table.note =
       "levels h/h0, front (w - w0)/h0; not shifted; delay: how much later the simulated "
       "front passes the same places, T";
   table.head = {"sensor", "experiment's", "rms difference", "delay"};
-  for (const LevelEvidence& one : evidence.levels) {
+  for (const LevelComparison& one : comparison.levels) {
     table.rows.push_back({one.sensor, one.reference, cell(one.rms_difference), "-"});
   }
-  if (evidence.front) {
-    table.rows.push_back({evidence.front->sensor, "front", cell(evidence.front->rms_difference),
-                          cell(evidence.front->delay)});
+  if (comparison.front) {
+    table.rows.push_back({comparison.front->sensor, "front", cell(comparison.front->rms_difference),
+                          cell(comparison.front->delay)});
   }
   return table;
 }
 
-Table curve_table(const SeriesEvidence& evidence) {
+Table curve_table(const SeriesComparison& comparison) {
   Table table;
   table.title = "Sensors against the scene's reference";
   table.head = {"sensor",  "unit",     "relative L2", "rms difference",
                 "highest", "expected", "at",          "expected at"};
-  for (const CurveEvidence& one : evidence.curves) {
+  for (const CurveComparison& one : comparison.curves) {
     table.rows.push_back({one.sensor, one.unit.empty() ? "-" : one.unit, brief(one.relative_l2),
                           brief(one.rms_difference), brief(peak_value(one.simulated_peak)),
                           brief(peak_value(one.expected_peak)),
@@ -128,28 +128,28 @@ Table curve_table(const SeriesEvidence& evidence) {
   return table;
 }
 
-void add_evidence_lines(std::vector<std::string>& lines, const Evidence& evidence) {
-  const Reference& reference = *evidence.reference;
+void add_comparison_lines(std::vector<std::string>& lines, const Comparison& comparison) {
+  const Reference& reference = *comparison.reference;
   lines.push_back(fmt::format("experiment: {}", reference.title));
   lines.push_back(reference.citation);
   lines.push_back(fmt::format(
       "T = t sqrt(g/h0), one T is {:.4f} s; pressures: time filter tau = {:g} ms, dry counts as P "
       "= 0, shifted by {} T, which makes the first sensor arrive as measured; averages over the "
       "figure's intervals, compared over {:g} < T < {:g}",
-      evidence.time_unit, evidence.tau * 1e3, shift_text(evidence), kComparisonWindow.from,
+      comparison.time_unit, comparison.tau * 1e3, shift_text(comparison), kComparisonWindow.from,
       kComparisonWindow.to));
   lines.push_back(fmt::format("mean relative L2 of P1-P4: {} shifted by {} T, {} not shifted",
-                              cell(evidence.mean_relative_l2), shift_text(evidence),
-                              cell(evidence.mean_relative_l2_not_shifted)));
+                              cell(comparison.mean_relative_l2), shift_text(comparison),
+                              cell(comparison.mean_relative_l2_not_shifted)));
 }
 
-void add_series_lines(std::vector<std::string>& lines, const SeriesEvidence& evidence) {
-  lines.push_back(fmt::format("reference: {}", evidence.title));
-  if (!evidence.citation.empty()) lines.push_back(evidence.citation);
+void add_series_lines(std::vector<std::string>& lines, const SeriesComparison& comparison) {
+  lines.push_back(fmt::format("reference: {}", comparison.title));
+  if (!comparison.citation.empty()) lines.push_back(comparison.citation);
   lines.push_back(fmt::format(
       "averages over the reference's intervals, not shifted; pressures: time filter tau = {:g} ms",
-      evidence.tau * 1e3));
-  lines.push_back(fmt::format("mean relative L2: {}", brief(evidence.mean_relative_l2)));
+      comparison.tau * 1e3));
+  lines.push_back(fmt::format("mean relative L2: {}", brief(comparison.mean_relative_l2)));
 }
 
 }  // namespace
@@ -193,27 +193,28 @@ std::vector<std::string> report_lines(const Report& report) {
   lines.push_back(fmt::format("spacing {:g} mm, h = {:g} mm, c = {:.4g} m/s", method.spacing * 1e3,
                               method.smoothing_length * 1e3, method.sound_speed));
   lines.push_back(scheme_text(report.scene));
-  if (report.evidence) add_evidence_lines(lines, *report.evidence);
-  if (report.series_evidence) add_series_lines(lines, *report.series_evidence);
-  if (!report.evidence && !report.series_evidence) {
+  if (report.comparison) add_comparison_lines(lines, *report.comparison);
+  if (report.series_comparison) add_series_lines(lines, *report.series_comparison);
+  if (!report.comparison && !report.series_comparison) {
     lines.push_back("no experiment in the program matches this scene, and it names no reference");
   }
   return lines;
 }
 
-std::vector<Table> evidence_tables(const Report& report) {
+std::vector<Table> comparison_tables(const Report& report) {
   std::vector<Table> tables;
-  if (report.evidence) {
-    const Evidence& evidence = *report.evidence;
-    if (!evidence.pressures.empty()) tables.push_back(pressure_table(evidence));
-    if (!evidence.levels.empty() || evidence.front) tables.push_back(kinematics_table(evidence));
+  if (report.comparison) {
+    const Comparison& comparison = *report.comparison;
+    if (!comparison.pressures.empty()) tables.push_back(pressure_table(comparison));
+    if (!comparison.levels.empty() || comparison.front)
+      tables.push_back(kinematics_table(comparison));
   }
-  if (report.series_evidence) tables.push_back(curve_table(*report.series_evidence));
+  if (report.series_comparison) tables.push_back(curve_table(*report.series_comparison));
   return tables;
 }
 
 std::vector<Table> report_tables(const Report& report) {
-  std::vector<Table> tables = evidence_tables(report);
+  std::vector<Table> tables = comparison_tables(report);
   for (Table& table : run_tables(report)) tables.push_back(std::move(table));
   return tables;
 }

@@ -14,7 +14,7 @@ namespace sluice {
 
 /// The comparison, if any, sensor by sensor (report_tables.cpp), then what the run was and cost
 /// (report_run_tables.cpp).
-[[nodiscard]] std::vector<Table> evidence_tables(const Report& report);
+[[nodiscard]] std::vector<Table> comparison_tables(const Report& report);
 [[nodiscard]] std::vector<Table> run_tables(const Report& report);
 [[nodiscard]] std::vector<Table> report_tables(const Report& report);
 

@@ -80,9 +80,11 @@ RunFacts run_facts(const Json& outcome) {
   facts.time = number_in(outcome, "/time");
   facts.particles = number_in(outcome, "/particles");
   facts.wall_particles = number_in(outcome, "/wall_particles");
-  facts.overtopped = number_in(outcome, "/retired/overtopped");
-  facts.leaked = number_in(outcome, "/retired/leaked");
-  facts.excluded = number_in(outcome, "/retired/excluded");
+  // "removed" is the word of builds before.
+  const std::string removed = outcome.contains("removed") ? "/removed/" : "/retired/";
+  facts.overtopped = number_in(outcome, removed + "overtopped");
+  facts.leaked = number_in(outcome, removed + "leaked");
+  facts.excluded = number_in(outcome, removed + "excluded");
   facts.max_speed = number_in(outcome, "/extremes/max_speed");
   facts.min_density_ratio = number_in(outcome, "/extremes/min_density_ratio");
   facts.max_density_ratio = number_in(outcome, "/extremes/max_density_ratio");

@@ -52,11 +52,11 @@ void add_box(std::optional<Box>& to, const Box& box) {
 
 std::vector<double> picture_times(const Report& report, double last) {
   if (!report.scene.pictures.empty()) return report.scene.pictures;
-  if (report.evidence) {
+  if (report.comparison) {
     std::vector<double> times;
-    for (const double time : kPaperTimes) times.push_back(time * report.evidence->time_unit);
+    for (const double time : kPaperTimes) times.push_back(time * report.comparison->time_unit);
     // A snapshot counts for a time that it comes a little before.
-    if (times.back() <= last + 0.1 * report.evidence->time_unit) return times;
+    if (times.back() <= last + 0.1 * report.comparison->time_unit) return times;
   }
   std::vector<double> times{0.0, last / 3.0, last * 2.0 / 3.0, last};
   const auto impact = time_of_highest_pressure(report);
@@ -66,7 +66,7 @@ std::vector<double> picture_times(const Report& report, double last) {
 }
 
 std::vector<fs::path> picture_files(const fs::path& folder, const Report& report) {
-  const std::vector<fs::path> all = JobPaths(folder).frame_files();
+  const std::vector<fs::path> all = JobPaths(folder).snapshot_files();
   if (all.empty() || !report.scene.frames) return {};
   const double interval = report.scene.frames->interval;
   const auto distance = [&](const fs::path& path, double time) {
@@ -83,24 +83,24 @@ std::vector<fs::path> picture_files(const fs::path& folder, const Report& report
 }
 
 std::vector<fs::path> spread_files(const fs::path& folder, std::size_t most) {
-  const std::vector<fs::path> all = JobPaths(folder).frame_files();
+  const std::vector<fs::path> all = JobPaths(folder).snapshot_files();
   if (all.size() <= most) return all;
   std::vector<fs::path> files;
   for (std::size_t k = 0; k < most; ++k) files.push_back(all[k * (all.size() - 1) / (most - 1)]);
   return files;
 }
 
-std::optional<Frame> try_frame(const fs::path& path) {
+std::optional<Snapshot> try_snapshot(const fs::path& path) {
   try {
-    return read_frame(path);
+    return read_snapshot(path);
   } catch (const StorageError&) {
     return std::nullopt;
   }
 }
 
-std::optional<Box> particle_box(std::span<const Frame> frames) {
+std::optional<Box> particle_box(std::span<const Snapshot> frames) {
   std::optional<Box> box;
-  for (const Frame& frame : frames) {
+  for (const Snapshot& frame : frames) {
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
       const Vec place = frame.position(i);
       if (place.allFinite()) add_box(box, {place, place});
@@ -132,9 +132,9 @@ Box picture_view(const Scene& scene, const std::optional<Box>& particles) {
   return {box->min - margin, box->max + margin};
 }
 
-double colour_end(const std::vector<Frame>& frames, Quantity quantity) {
+double colour_end(const std::vector<Snapshot>& frames, Quantity quantity) {
   std::vector<float> all;
-  for (const Frame& frame : frames) {
+  for (const Snapshot& frame : frames) {
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
       const float value = coloured_value(frame, i, quantity);
       if (std::isfinite(value)) all.push_back(value);

@@ -25,15 +25,15 @@ namespace sluice {
                                                               std::size_t most);
 
 /// Nothing where the file cannot be read: a report without one of its pictures is worth having.
-[[nodiscard]] std::optional<Frame> try_frame(const std::filesystem::path& path);
+[[nodiscard]] std::optional<Snapshot> try_snapshot(const std::filesystem::path& path);
 
 /// The box around all particles that are somewhere; nothing when none is.
-[[nodiscard]] std::optional<Box> particle_box(std::span<const Frame> frames);
+[[nodiscard]] std::optional<Box> particle_box(std::span<const Snapshot> frames);
 
 /// The tank with its walls, or the box around particles and obstacles.
 [[nodiscard]] Box picture_view(const Scene& scene, const std::optional<Box>& particles);
 
 /// A common end for the colours of these frames: what all but one value in two hundred stay below.
-[[nodiscard]] double colour_end(const std::vector<Frame>& frames, Quantity quantity);
+[[nodiscard]] double colour_end(const std::vector<Snapshot>& frames, Quantity quantity);
 
 }  // namespace sluice

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "engine/run/advice.hpp"
-#include "engine/sph/method/retired.hpp"
-#include "engine/sph/stability/crowding.hpp"
+#include "engine/sph/method/removed.hpp"
+#include "engine/sph/stability/neighbour_count.hpp"
 
 namespace sluice {
 namespace {
@@ -29,13 +29,13 @@ double share_of(std::size_t count, const StepFacts& facts) {
 }
 
 std::size_t leaked_in(const StepFacts& facts) {
-  return facts.retired[static_cast<std::size_t>(RetireCause::leaked)];
+  return facts.removed[static_cast<std::size_t>(RemovalCause::leaked)];
 }
 
 std::size_t excluded_in(const StepFacts& facts) {
   std::size_t count = 0;
-  for (std::size_t cause = 0; cause < kRetireCauses; ++cause) {
-    if (is_exclusion(static_cast<RetireCause>(cause))) count += facts.retired[cause];
+  for (std::size_t cause = 0; cause < kRemovalCauses; ++cause) {
+    if (is_exclusion(static_cast<RemovalCause>(cause))) count += facts.removed[cause];
   }
   return count;
 }
@@ -43,11 +43,11 @@ std::size_t excluded_in(const StepFacts& facts) {
 /// " (30 too dense, 2 too fast)"
 std::string kinds_of_excluded(const StepFacts& facts) {
   std::string text;
-  for (std::size_t cause = 0; cause < kRetireCauses; ++cause) {
-    const auto kind = static_cast<RetireCause>(cause);
-    if (!is_exclusion(kind) || facts.retired[cause] == 0) continue;
+  for (std::size_t cause = 0; cause < kRemovalCauses; ++cause) {
+    const auto kind = static_cast<RemovalCause>(cause);
+    if (!is_exclusion(kind) || facts.removed[cause] == 0) continue;
     text +=
-        fmt::format("{}{} {}", text.empty() ? " (" : ", ", facts.retired[cause], to_string(kind));
+        fmt::format("{}{} {}", text.empty() ? " (" : ", ", facts.removed[cause], to_string(kind));
   }
   return text + ")";
 }
@@ -171,9 +171,9 @@ double GuardLimits::crossing_time(const GuardBaselines& baselines) const {
   return std::sqrt(baselines.initial_mass / method.reference_density) / method.sound_speed;
 }
 
-double energy_that_left(const Method& method, const Retired& retired) {
-  const Energy energy = energy_of(method, retired);
-  return is_exclusion(retired.cause) ? energy.potential : energy.total();
+double energy_that_left(const Method& method, const RemovedParticle& removed) {
+  const Energy energy = energy_of(method, removed);
+  return is_exclusion(removed.cause) ? energy.potential : energy.total();
 }
 
 std::span<const Guard> failing_guards() { return kFailing; }
@@ -207,10 +207,10 @@ GuardBaselines initial_baselines(const Method& method, const SolverState& state,
     lifted += height_of(particles, i, method.gravity) - lowest + 0.5 * method.spacing;
   }
   double left = 0.0;
-  for (const Retired& retired : state.retired) left += energy_that_left(method, retired);
+  for (const RemovedParticle& removed : state.removed) left += energy_that_left(method, removed);
   GuardBaselines base;
   base.initial_mass =
-      static_cast<double>(particles.size() + state.retired.size()) * method.particle_mass();
+      static_cast<double>(particles.size() + state.removed.size()) * method.particle_mass();
   base.initial_energy = energy.total() + left;
   base.highest_energy = base.initial_energy;
   const double brought =

@@ -65,7 +65,7 @@ struct StepFacts {
   double time = 0.0;  ///< s
   Extremes extremes;
   /// Particles that left, by cause; overtopping is no failure.
-  std::array<std::size_t, kRetireCauses> retired{};
+  std::array<std::size_t, kRemovalCauses> removed{};
   std::size_t excluded_at_once = 0;  ///< within the last GuardLimits::crossing_time
   std::size_t initial_particles = 0;
   std::size_t particles = 0;
@@ -77,7 +77,7 @@ struct StepFacts {
 /// What removed particles took along of the energy that the guard watches, J/m: all that was in
 /// those that went over a rim or leaked; of an excluded one the potential energy alone, for its
 /// speed or density came from nowhere, and its kind is judged by its number.
-[[nodiscard]] double energy_that_left(const Method& method, const Retired& retired);
+[[nodiscard]] double energy_that_left(const Method& method, const RemovedParticle& removed);
 
 /// Energy is summed, and its guard checked, every this many steps.
 inline constexpr std::uint64_t kEnergyInterval = 50;

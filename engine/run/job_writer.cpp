@@ -8,8 +8,8 @@
 
 #include "engine/run/insist.hpp"
 #include "engine/store/disk/trailer.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/series_file.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 JobWriter::JobWriter(JobFolder& folder, const RunOptions& options, Reporter& reporter,
@@ -85,18 +85,18 @@ bool JobWriter::checkpoint_due(const Simulation& simulation) const {
   return false;
 }
 
-void JobWriter::write_due_frame(Simulation& simulation) {
-  const auto index = simulation.due_frame();
+void JobWriter::write_due_snapshot(Simulation& simulation) {
+  const auto index = simulation.due_snapshot();
   if (!index) return;
   const double start = clock_.seconds();
-  const Frame frame = make_frame(simulation.solver().state(), simulation.scene().method);
+  const Snapshot frame = make_snapshot(simulation.solver().state(), simulation.scene().method);
   const auto path = folder_->paths().frame(*index);
   persist("a frame", [&] {
     folder_->require_held();
     std::filesystem::create_directory(path.parent_path());
-    write_frame(path, frame);
+    write_snapshot(path, frame);
   });
-  simulation.frame_written();
+  simulation.snapshot_written();
   output_seconds_ += clock_.seconds() - start;
 }
 

@@ -39,7 +39,7 @@ class JobWriter {
   void checkpoint_surely(const Simulation& simulation);
 
   /// Writes the frame that is due, waiting for the disk: a frame cannot be made up for later.
-  void write_due_frame(Simulation& simulation);
+  void write_due_snapshot(Simulation& simulation);
 
   /// Publishes series.h5 when it is due; a failure is only warned about.
   void refresh_series(const Simulation& simulation);

@@ -109,11 +109,11 @@ Outcome describe_simulation(const Simulation& simulation) {
   outcome.end_time = simulation.scene().end_time;
   outcome.particles = solver.particle_count();
   outcome.wall_particles = solver.wall_count();
-  for (std::size_t i = 0; i < kRetireCauses; ++i) {
-    const auto cause = static_cast<RetireCause>(i);
-    Departed& kind = is_exclusion(cause)                ? outcome.excluded
-                     : cause == RetireCause::overtopped ? outcome.overtopped
-                                                        : outcome.leaked;
+  for (std::size_t i = 0; i < kRemovalCauses; ++i) {
+    const auto cause = static_cast<RemovalCause>(i);
+    Departed& kind = is_exclusion(cause)                 ? outcome.excluded
+                     : cause == RemovalCause::overtopped ? outcome.overtopped
+                                                         : outcome.leaked;
     kind.merge(simulation.departed(cause));
   }
   outcome.energy = solver.energy().total();
@@ -140,7 +140,7 @@ Json to_json(const Outcome& outcome) {
               {"end_time", outcome.end_time},
               {"particles", outcome.particles},
               {"wall_particles", outcome.wall_particles}};
-  object["retired"] = Json{{"overtopped", outcome.overtopped.count},
+  object["removed"] = Json{{"overtopped", outcome.overtopped.count},
                            {"leaked", outcome.leaked.count},
                            {"excluded", outcome.excluded.count}};
   object["taken_along"] = Json{{"overtopped", departed_json(outcome.overtopped)},

@@ -19,7 +19,7 @@ class RemovalNews {
   void tell(const Simulation& simulation, Reporter& reporter);
 
  private:
-  void count(const Retired& retired, const Method& method, Reporter& reporter);
+  void count(const RemovedParticle& removed, const Method& method, Reporter& reporter);
 
   std::size_t seen_ = 0;
   std::array<std::size_t, 2> removed_{};  ///< leaked, excluded, since the start of the run

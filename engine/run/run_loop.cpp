@@ -88,11 +88,11 @@ class RunLoop {
 
   void advance_to_end() {
     rate_.add(0.0, first_time_, first_step_, 0);
-    writer_.write_due_frame(*simulation_);
+    writer_.write_due_snapshot(*simulation_);
     writer_.checkpoint_when_due(*simulation_);
     while (!simulation_->finished() && !stop_asked()) {
       simulation_->step();
-      writer_.write_due_frame(*simulation_);
+      writer_.write_due_snapshot(*simulation_);
       report();
       writer_.checkpoint_when_due(*simulation_);
       writer_.refresh_series(*simulation_);
@@ -189,7 +189,7 @@ class RunLoop {
 Json started_fields(const Simulation& simulation, const JobFolder& folder) {
   const Solver& solver = simulation.solver();
   // A few may be gone before the first step: they have started as well.
-  const std::size_t gone = solver.step_count() == 0 ? solver.retired().size() : 0;
+  const std::size_t gone = solver.step_count() == 0 ? solver.removed().size() : 0;
   return Json{{"scene", simulation.scene().name},
               {"folder", folder.name().string()},
               {"step", solver.step_count()},
@@ -215,7 +215,7 @@ void report_rejected(const std::vector<std::string>& reasons, Reporter& reporter
   for (const std::string& reason : reasons) reporter.event("warning", {{"message", reason}});
 }
 
-Expectation expectation_of(const Scene& scene) {
+CheckpointIdentity identity_of(const Scene& scene) {
   return {scene_hash(identity_text(scene)), scene.method.integrator};
 }
 
@@ -267,7 +267,7 @@ Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOpti
 /// it.
 std::optional<Restored> find_checkpoint(JobFolder& folder, const Scene& scene, Reporter& reporter) {
   try {
-    return folder.newest_checkpoint(expectation_of(scene));
+    return folder.newest_checkpoint(identity_of(scene));
   } catch (const StorageError& inside) {
     const StorageError error = told_outside(folder.name(), inside);
     reporter.event("failed", {{"exit_code", static_cast<int>(exit_code_of(error.fault()))},

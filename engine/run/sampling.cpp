@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "engine/run/schedule.hpp"
-#include "engine/scene/geometry/open_share.hpp"
+#include "engine/scene/geometry/open_fraction.hpp"
 
 namespace sluice {
 namespace {
@@ -59,7 +59,7 @@ class FacePressureSampler final : public PressureSampler {
   }
 
  private:
-  OpenShare open_;
+  OpenFraction open_;
   double air_;
 };
 

@@ -97,7 +97,7 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       solver_(start_solver(execution)),
       samples_(sensors_.empty_tables()) {
   const Energy energy = solver_.energy();
-  count_retired();
+  count_removed();
   baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
   baselines_.min_density_excess_seen = solver_.extremes().min_density_excess;
   baselines_.max_density_excess_seen = solver_.extremes().max_density_excess;
@@ -113,12 +113,12 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
       solver_(resume_solver(scene_, execution, checkpoint.solver)),
       samples_(std::move(checkpoint.samples)),
       baselines_(checkpoint.guards),
-      next_frame_(checkpoint.next_frame) {
+      next_snapshot_(checkpoint.next_snapshot) {
   require_same_scene(scene_hash_, checkpoint);
   samples_ = in_tables(sensors_.empty_tables(), std::move(samples_));
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();
-  count_retired();
+  count_removed();
 }
 
 Solver Simulation::start_solver(const Execution& execution) {
@@ -133,7 +133,7 @@ void Simulation::step() {
   if (failed_) throw std::logic_error("a simulation that failed takes no further step");
   solver_.step();
   particle_steps_ += solver_.particle_count();
-  count_retired();
+  count_removed();
   note_extremes();
 
   std::optional<Energy> energy;
@@ -168,25 +168,25 @@ Checkpoint Simulation::checkpoint() const {
   kept.solver = solver_.state();
   kept.samples = samples_;
   kept.guards = baselines_;
-  kept.next_frame = next_frame_;
+  kept.next_snapshot = next_snapshot_;
   return kept;
 }
 
-std::optional<std::uint64_t> Simulation::due_frame() const {
-  if (!scene_.frames || !is_due(solver_.time(), scene_.frames->interval, next_frame_)) return {};
-  return next_frame_;
+std::optional<std::uint64_t> Simulation::due_snapshot() const {
+  if (!scene_.frames || !is_due(solver_.time(), scene_.frames->interval, next_snapshot_)) return {};
+  return next_snapshot_;
 }
 
-void Simulation::frame_written() {
-  next_frame_ = next_index_after(solver_.time(), scene_.frames->interval, next_frame_);
+void Simulation::snapshot_written() {
+  next_snapshot_ = next_index_after(solver_.time(), scene_.frames->interval, next_snapshot_);
 }
 
 std::vector<Diagnosis> Simulation::take_warnings() { return std::exchange(warnings_, {}); }
 
-void Simulation::count_retired() {
-  const std::vector<Retired>& retired = solver_.retired();
-  for (; retired_counted_ < retired.size(); ++retired_counted_) {
-    const Retired& one = retired[retired_counted_];
+void Simulation::count_removed() {
+  const std::vector<RemovedParticle>& removed = solver_.removed();
+  for (; removed_counted_ < removed.size(); ++removed_counted_) {
+    const RemovedParticle& one = removed[removed_counted_];
     departed_[static_cast<std::size_t>(one.cause)].add(scene_.method, one);
     if (is_exclusion(one.cause)) excluded_at_.push_back(one.time);
     energy_that_left_ += energy_that_left(scene_.method, one);
@@ -227,8 +227,8 @@ StepFacts Simulation::facts(std::optional<Energy> energy) const {
   now.step = solver_.step_count();
   now.time = solver_.time();
   now.extremes = solver_.extremes();
-  for (std::size_t cause = 0; cause < kRetireCauses; ++cause) {
-    now.retired[cause] = departed_[cause].count;
+  for (std::size_t cause = 0; cause < kRemovalCauses; ++cause) {
+    now.removed[cause] = departed_[cause].count;
   }
   const double lately = solver_.time() - limits_.crossing_time(baselines_);
   now.excluded_at_once = static_cast<std::size_t>(

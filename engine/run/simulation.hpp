@@ -10,7 +10,7 @@
 #include "engine/run/sampling.hpp"
 #include "engine/scene/filling/packing.hpp"
 #include "engine/scene/model/scene.hpp"
-#include "engine/sph/method/retired.hpp"
+#include "engine/sph/method/removed.hpp"
 #include "engine/sph/solver/solver.hpp"
 #include "engine/store/files/checkpoint.hpp"
 
@@ -47,9 +47,9 @@ class Simulation {
   /// kept; whether it is looked for changes nothing in the run.
   [[nodiscard]] std::optional<Diagnosis> violation() const;
 
-  /// Index of the frame that is due now, if any. Stays until frame_written().
-  [[nodiscard]] std::optional<std::uint64_t> due_frame() const;
-  void frame_written();
+  /// Index of the frame that is due now, if any. Stays until snapshot_written().
+  [[nodiscard]] std::optional<std::uint64_t> due_snapshot() const;
+  void snapshot_written();
 
   /// The first breach of each warning guard since construction, handed out once.
   [[nodiscard]] std::vector<Diagnosis> take_warnings();
@@ -63,11 +63,11 @@ class Simulation {
   [[nodiscard]] const std::vector<SampleTable>& samples() const { return samples_; }
   [[nodiscard]] const GuardBaselines& baselines() const { return baselines_; }
   /// What particles took along that left for this cause.
-  [[nodiscard]] const Departed& departed(RetireCause cause) const {
+  [[nodiscard]] const Departed& departed(RemovalCause cause) const {
     return departed_[static_cast<std::size_t>(cause)];
   }
-  [[nodiscard]] std::size_t leaked() const { return departed(RetireCause::leaked).count; }
-  [[nodiscard]] std::size_t overtopped() const { return departed(RetireCause::overtopped).count; }
+  [[nodiscard]] std::size_t leaked() const { return departed(RemovalCause::leaked).count; }
+  [[nodiscard]] std::size_t overtopped() const { return departed(RemovalCause::overtopped).count; }
   [[nodiscard]] std::size_t excluded() const { return excluded_at_.size(); }
   [[nodiscard]] bool bit_exact() const { return bit_exact_; }
   /// Since construction: sum of the fluid particles over all steps, and seconds spent on samples.
@@ -75,7 +75,7 @@ class Simulation {
   [[nodiscard]] double sample_seconds() const { return sample_seconds_; }
 
  private:
-  void count_retired();
+  void count_removed();
   void note_extremes();
   void sample();
   void note_warnings(const StepFacts& facts);
@@ -92,12 +92,12 @@ class Simulation {
   Solver solver_;
   std::vector<SampleTable> samples_;
   GuardBaselines baselines_;
-  std::uint64_t next_frame_ = 0;
+  std::uint64_t next_snapshot_ = 0;
   bool bit_exact_ = true;
   bool failed_ = false;
 
-  std::size_t retired_counted_ = 0;
-  std::array<Departed, kRetireCauses> departed_;
+  std::size_t removed_counted_ = 0;
+  std::array<Departed, kRemovalCauses> departed_;
   std::vector<double> excluded_at_;  ///< s, increasing
   double energy_that_left_ = 0.0;    ///< J/m, see guards.hpp
   std::uint64_t particle_steps_ = 0;

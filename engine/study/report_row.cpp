@@ -36,17 +36,21 @@ void add_error(StudyRow& row, const std::string& sensor, const Json& one) {
 
 /// Means over stretches of time, which the chaos after an impact leaves defined; peaks are not.
 void take_experiment(StudyRow& row, const Json& report) {
-  for (const Json& one : find(report, "/evidence/pressures")) {
+  // "evidence" is the word of reports before.
+  const Json& comparison = find(report, report.contains("evidence") ? "/evidence" : "/comparison");
+  for (const Json& one : find(comparison, "/pressures")) {
     const std::string sensor = text_at(one, "/sensor");
     add_error(row, sensor, one);
     add_quantity(row, sensor + " impulse", number_at(one, "/simulation/impulse"));
     add_quantity(row, sensor + " plateau", number_at(one, "/simulation/plateau"));
   }
-  add_quantity(row, "front delay", number_at(report, "/evidence/front/delay"));
+  add_quantity(row, "front delay", number_at(comparison, "/front/delay"));
 }
 
 void take_curves(StudyRow& row, const Json& report) {
-  for (const Json& one : find(report, "/series_evidence/curves")) {
+  const Json& comparison =
+      find(report, report.contains("series_evidence") ? "/series_evidence" : "/series_comparison");
+  for (const Json& one : find(comparison, "/curves")) {
     const std::string sensor = text_at(one, "/sensor");
     add_error(row, sensor, one);
     add_quantity(row, sensor + " highest", number_at(one, "/highest/value"));

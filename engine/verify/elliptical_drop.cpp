@@ -37,7 +37,7 @@ double drop_stretch(double a_t) {
   return s;
 }
 
-DropRun run_drop(StabilityBench& bench, int per_radius) {
+DropRun run_drop(CaseRunner& bench, int per_radius) {
   Json drop = circle(Vec::Zero(), 1.0);
   drop["strain_rate"] = -1.0;
   DropRun result{bench.run(in_space(fmt::format("elliptical-drop-{}", per_radius), std::move(drop),
@@ -51,7 +51,7 @@ DropRun run_drop(StabilityBench& bench, int per_radius) {
   return result;
 }
 
-std::vector<DropPoint> run_drops(StabilityBench& bench) {
+std::vector<DropPoint> run_drops(CaseRunner& bench) {
   std::vector<DropPoint> points;
   for (const int per_radius :
        bench.pick(std::vector{10, 15, 20, 30}, std::vector{10, 20, 40, 80})) {

@@ -7,7 +7,7 @@
 
 #include "engine/study/convergence.hpp"
 #include "engine/study/table.hpp"
-#include "engine/verify/stability_bench.hpp"
+#include "engine/verify/case_runner.hpp"
 
 namespace sluice {
 
@@ -38,11 +38,11 @@ struct DropRun {
 };
 
 /// Runs the drop to A t = 0.8, with A = 1/s and R = 1 m.
-[[nodiscard]] DropRun run_drop(StabilityBench& bench, int per_radius);
+[[nodiscard]] DropRun run_drop(CaseRunner& bench, int per_radius);
 
 /// Runs the drop with R/dx = 10, 20, 40 and 80 (quick: 10, 15, 20, 30) one after another. Throws
 /// std::runtime_error when a run does not end well.
-[[nodiscard]] std::vector<DropPoint> run_drops(StabilityBench& bench);
+[[nodiscard]] std::vector<DropPoint> run_drops(CaseRunner& bench);
 
 /// What the drops say of the order of the scheme: errors and their order, Richardson's limit and
 /// grid convergence index of the stretch.

@@ -84,7 +84,7 @@ CaseResult result_of(const CaseRun& run, Verdict expected, std::optional<Verdict
   return result;
 }
 
-CaseResult run_case(const StabilityCase& each, StabilityBench& bench) {
+CaseResult run_case(const StabilityCase& each, CaseRunner& bench) {
   const Stopwatch clock;
   CaseResult result = each.judge(bench);
   result.seconds = clock.seconds();

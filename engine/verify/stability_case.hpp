@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/verify/stability_bench.hpp"
+#include "engine/verify/case_runner.hpp"
 
 namespace sluice {
 
@@ -51,7 +51,7 @@ struct StabilityCase {
   std::string_view name;
   std::string_view about;
   std::string_view gate;  ///< what must come out, in words
-  CaseResult (*judge)(StabilityBench&);
+  CaseResult (*judge)(CaseRunner&);
   std::string_view paper_miss{};  ///< why the paper's scheme misses the gate, where it does
 };
 
@@ -72,7 +72,7 @@ inline constexpr std::string_view kLifted =
 [[nodiscard]] CaseResult result_of(const CaseRun& run, Verdict expected,
                                    std::optional<Verdict> or_else = {});
 
-/// Runs one case and takes its time. Throws what StabilityBench::run throws.
-[[nodiscard]] CaseResult run_case(const StabilityCase& each, StabilityBench& bench);
+/// Runs one case and takes its time. Throws what CaseRunner::run throws.
+[[nodiscard]] CaseResult run_case(const StabilityCase& each, CaseRunner& bench);
 
 }  // namespace sluice

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-CaseResult elliptical_drop(StabilityBench& bench) {
+CaseResult elliptical_drop(CaseRunner& bench) {
   const DropRun drop = run_drop(bench, bench.pick(15, 40));
   CaseResult result = result_of(drop.run, Verdict::stable, Verdict::stable_with_warnings);
   if (drop.point) result.figures.push_back({"axis", drop.point->error(), 0.02});
@@ -64,7 +64,7 @@ void pull_to_center(Particles& p, double time) {
 
 /// No scene has a central force, so it acts between the steps here: split off, to first order in a
 /// step, which is a thousandth of 1/omega.
-CaseResult pulsing_drop(StabilityBench& bench) {
+CaseResult pulsing_drop(CaseRunner& bench) {
   const double end = bench.pick(5.0, 14.0);
   PulsingDrop exact;
   Json drop = circle(Vec::Zero(), 1.0);
@@ -90,7 +90,7 @@ CaseResult pulsing_drop(StabilityBench& bench) {
     pull_to_center(p, solver.time_step());
     exact.advance(solver.time_step());
     const double axis = std::sqrt(mean_square(p.x)) / radius;
-    const bool whole = solver.retired().empty();
+    const bool whole = solver.removed().empty();
     axis_error = std::max(axis_error, whole ? std::abs(axis - exact.a) : HUGE_VAL);
     if (!whole) break;
   }

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A flow that must end by itself: what left through walls, and energy that came from nowhere.
-CaseResult end_of(StabilityBench& bench, const Json& scene) {
+CaseResult end_of(CaseRunner& bench, const Json& scene) {
   const CaseRun run = bench.run(scene);
   CaseResult result = result_of(run, Verdict::stable, Verdict::stable_with_warnings);
   if (!run.completed()) return result;
@@ -28,24 +28,24 @@ CaseResult end_of(StabilityBench& bench, const Json& scene) {
   return result;
 }
 
-CaseResult tall_dam(StabilityBench& b) {
+CaseResult tall_dam(CaseRunner& b) {
   return end_of(b, dam_break("column-1-50", 0.02, 1.0, b.pick(4, 10), b.pick(2.0, 6.0)));
 }
-CaseResult wide_dam(StabilityBench& b) {
+CaseResult wide_dam(CaseRunner& b) {
   return end_of(b, dam_break("column-50-1", 1.0, 0.02, b.pick(5, 20), b.pick(10.0, 60.0)));
 }
-CaseResult per_height_2(StabilityBench& b) {
+CaseResult per_height_2(CaseRunner& b) {
   return end_of(b, dam_break("per-height-2", 0.5, 0.5, 2, 10));
 }
-CaseResult per_height_4(StabilityBench& b) {
+CaseResult per_height_4(CaseRunner& b) {
   return end_of(b, dam_break("per-height-4", 0.5, 0.5, 4, 10));
 }
 /// A quarter as wide as high, so that there are 40 000 particles and not four times as many.
-CaseResult per_height_many(StabilityBench& b) {
+CaseResult per_height_many(CaseRunner& b) {
   return end_of(b, dam_break("per-height-many", 0.125, 0.5, b.pick(10, 100), 2.0));
 }
 
-CaseResult with_gravity(StabilityBench& b, std::string_view name, double factor) {
+CaseResult with_gravity(CaseRunner& b, std::string_view name, double factor) {
   Json scene = dam_break(name, 0.5, 0.5, 12, 6);
   const double root = std::sqrt(factor);
   scene["gravity"] = {0.0, -kGravity * factor};
@@ -54,31 +54,31 @@ CaseResult with_gravity(StabilityBench& b, std::string_view name, double factor)
   scene["sensors"][0]["interval"] = scene["sensors"][0]["interval"].get<double>() / root;
   return end_of(b, scene);
 }
-CaseResult gravity_low(StabilityBench& b) { return with_gravity(b, "gravity-1e-6", 1e-6); }
-CaseResult gravity_high(StabilityBench& b) { return with_gravity(b, "gravity-1e6", 1e6); }
+CaseResult gravity_low(CaseRunner& b) { return with_gravity(b, "gravity-1e-6", 1e-6); }
+CaseResult gravity_high(CaseRunner& b) { return with_gravity(b, "gravity-1e6", 1e6); }
 
-CaseResult with_density(StabilityBench& b, std::string_view name, double density) {
+CaseResult with_density(CaseRunner& b, std::string_view name, double density) {
   Json scene = dam_break(name, 0.5, 0.5, 12, 6);
   scene["material"]["density"] = density;
   return end_of(b, scene);
 }
-CaseResult density_low(StabilityBench& b) { return with_density(b, "density-1e-3", 1e-3); }
-CaseResult density_high(StabilityBench& b) { return with_density(b, "density-1e5", 1e5); }
+CaseResult density_low(CaseRunner& b) { return with_density(b, "density-1e-3", 1e-3); }
+CaseResult density_high(CaseRunner& b) { return with_density(b, "density-1e5", 1e5); }
 
-CaseResult tank_1mm(StabilityBench& b) {
+CaseResult tank_1mm(CaseRunner& b) {
   return end_of(b, dam_break("tank-1mm", 2.5e-4, 2.5e-4, 12, 6));
 }
-CaseResult tank_1km(StabilityBench& b) { return end_of(b, dam_break("tank-1km", 250, 250, 12, 6)); }
+CaseResult tank_1km(CaseRunner& b) { return end_of(b, dam_break("tank-1km", 250, 250, 12, 6)); }
 
 /// Falls on a film of 1 mm: many depths of flow over few particles.
-CaseResult film_1mm(StabilityBench& b) {
+CaseResult film_1mm(CaseRunner& b) {
   const double dx = b.pick(2.5e-4, 1e-4);
   const Json fluid = Json::array({rectangle(Vec::Zero(), Vec(0.05, 0.001))});
   return end_of(b, tank_scene("film-1mm", Vec(0.05, 0.01), fluid, dx,
                               14.2 * std::sqrt(kGravity * 0.001), b.pick(0.3, 2.0)));
 }
 
-CaseResult jet_in_corner(StabilityBench& b) {
+CaseResult jet_in_corner(CaseRunner& b) {
   Json jet = rectangle(Vec(0.2, 0.0), Vec(0.5, 0.1));
   jet["velocity"] = {1.0, 0.0};
   jet["pressure"] = "zero";
@@ -86,7 +86,7 @@ CaseResult jet_in_corner(StabilityBench& b) {
                               20.0, 0.8));
 }
 
-CaseResult drop_on_film(StabilityBench& b) {
+CaseResult drop_on_film(CaseRunner& b) {
   Json drop = circle(Vec(0.5, 0.3), 0.1);
   drop["velocity"] = {0.0, -1.0};
   const Json fluid = Json::array({rectangle(Vec::Zero(), Vec(1.0, 0.05)), drop});
@@ -94,13 +94,13 @@ CaseResult drop_on_film(StabilityBench& b) {
                 tank_scene("drop-on-film", Vec(1.0, 0.8), fluid, b.pick(0.0125, 0.005), 25.0, 0.6));
 }
 
-CaseResult column_on_obstacle(StabilityBench& b) {
+CaseResult column_on_obstacle(CaseRunner& b) {
   Json scene = dam_break("column-obstacle", 0.4, 0.4, b.pick(14, 60), 6);
   scene["obstacles"] = Json::array({rectangle(Vec(0.8, 0.0), Vec(0.1, 0.1))});
   return end_of(b, scene);
 }
 
-CaseResult colliding_columns(StabilityBench& b) {
+CaseResult colliding_columns(CaseRunner& b) {
   const Json fluid =
       Json::array({rectangle(Vec::Zero(), Vec(0.3, 0.3)), rectangle(Vec(0.9, 0.0), Vec(0.3, 0.3))});
   return end_of(
@@ -108,13 +108,13 @@ CaseResult colliding_columns(StabilityBench& b) {
 }
 
 /// A block that hangs over nothing: its hydrostatic pressure has no floor to rest on.
-CaseResult overhang(StabilityBench& b) {
+CaseResult overhang(CaseRunner& b) {
   const Json fluid =
       Json::array({rectangle(Vec::Zero(), Vec(0.2, 0.4)), rectangle(Vec(0.2, 0.2), Vec(0.3, 0.2))});
   return end_of(b, tank_scene("overhang", Vec(1.0, 0.8), fluid, 0.2 / b.pick(10, 40), 30.0, 0.8));
 }
 
-CaseResult odd_spacing(StabilityBench& b) {
+CaseResult odd_spacing(CaseRunner& b) {
   const Json fluid = Json::array({rectangle(Vec::Zero(), Vec(0.3719, 0.2417))});
   return end_of(
       b, tank_scene("odd-spacing", Vec(1.1234, 0.6), fluid, b.pick(0.0231, 0.00731), 22.0, 1.0));

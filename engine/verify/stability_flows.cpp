@@ -33,7 +33,7 @@ double closest_pair(const Particles& p) {
   return std::sqrt(least);
 }
 
-CaseResult rotating_patch(StabilityBench& bench) {
+CaseResult rotating_patch(CaseRunner& bench) {
   const double dx = 1.0 / bench.pick(20, 50);
   Json patch = rectangle(Vec(-0.5, -0.5), Vec(1, 1));
   patch["rotation_rate"] = -1.0;
@@ -75,7 +75,7 @@ double dominant_frequency(const Series& series, double near) {
 
 /// First sloshing mode of a tank of width L = 2 H: k = pi/L, omega^2 = g k tanh(k H). The kinetic
 /// energy goes twice as fast.
-CaseResult standing_wave(StabilityBench& bench) {
+CaseResult standing_wave(CaseRunner& bench) {
   constexpr double kAmplitude = 0.05;
   const double k = 0.5 * std::numbers::pi;
   const double omega = std::sqrt(kGravity * k * std::tanh(k));
@@ -98,7 +98,7 @@ CaseResult standing_wave(StabilityBench& bench) {
 
 /// Falls until most of the drop has met the floor. Its jets are five times as fast as the drop: the
 /// tank is so wide that they meet no wall.
-CaseResult droplet_at(StabilityBench& bench, double mach, Verdict expected) {
+CaseResult droplet_at(CaseRunner& bench, double mach, Verdict expected) {
   constexpr double kSound = 20.0;
   const double dx = 0.1 / bench.pick(15, 40);
   Json drop = circle(Vec(1.5, 0.12), 0.1);
@@ -107,13 +107,11 @@ CaseResult droplet_at(StabilityBench& bench, double mach, Verdict expected) {
                                         Json::array({drop}), dx, kSound, 0.2 / (mach * kSound))),
                    expected);
 }
-CaseResult droplet_01(StabilityBench& b) {
-  return droplet_at(b, 0.1, Verdict::stable_with_warnings);
-}
-CaseResult droplet_05(StabilityBench& b) { return droplet_at(b, 0.5, Verdict::unstable); }
-CaseResult droplet_1(StabilityBench& b) { return droplet_at(b, 1.0, Verdict::unstable); }
+CaseResult droplet_01(CaseRunner& b) { return droplet_at(b, 0.1, Verdict::stable_with_warnings); }
+CaseResult droplet_05(CaseRunner& b) { return droplet_at(b, 0.5, Verdict::unstable); }
+CaseResult droplet_1(CaseRunner& b) { return droplet_at(b, 1.0, Verdict::unstable); }
 
-CaseResult one_particle_film(StabilityBench& bench) {
+CaseResult one_particle_film(CaseRunner& bench) {
   StillWater water;
   water.depth = 0.01;
   water.width = 40;
@@ -123,14 +121,14 @@ CaseResult one_particle_film(StabilityBench& bench) {
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
 
-CaseResult half_perturbation(StabilityBench& bench) {
+CaseResult half_perturbation(CaseRunner& bench) {
   Json scene = still_water("perturbation-half", {});
   scene["perturbation"] = {{"amplitude", 0.5}};
   return result_of(bench.run(scene), Verdict::stable, Verdict::stable_with_warnings);
 }
 
 /// A pair at one place has no direction to part in: the others must move them, without a NaN.
-CaseResult coincident_particles(StabilityBench& bench) {
+CaseResult coincident_particles(CaseRunner& bench) {
   const CaseRun run =
       bench.run(still_water("coincident", {}), StabilityCheck::refuse, [](Particles& p) {
         p.x[210] = p.x[211];
@@ -139,13 +137,13 @@ CaseResult coincident_particles(StabilityBench& bench) {
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
 
-CaseResult overlapping_regions(StabilityBench& bench) {
+CaseResult overlapping_regions(CaseRunner& bench) {
   Json scene = still_water("overlap", {});
   scene["fluid"].push_back(scene["fluid"][0]);
   return result_of(bench.run(scene), Verdict::rejected);
 }
 
-CaseResult free_fall(StabilityBench& bench) {
+CaseResult free_fall(CaseRunner& bench) {
   Json scene = in_space("free-fall", rectangle(Vec::Zero(), Vec(0.01, 0.01)), 0.01, 50.0, 1.0);
   scene["gravity"] = {0.0, -kGravity};
   scene["fluid"][0]["velocity"] = {1.0, 2.0};
@@ -160,7 +158,7 @@ CaseResult free_fall(StabilityBench& bench) {
   return result;
 }
 
-CaseResult absurd_values(StabilityBench& bench) {
+CaseResult absurd_values(CaseRunner& bench) {
   const Json good = with_scheme(still_water("absurd", {}), bench.scheme());
   double accepted = 0;
   CaseResult result;

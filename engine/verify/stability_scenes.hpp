@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "engine/scene/model/scene.hpp"
-#include "engine/verify/stability_bench.hpp"
+#include "engine/verify/case_runner.hpp"
 
 namespace sluice {
 

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-CaseResult still_recommended(StabilityBench& bench) {
+CaseResult still_recommended(CaseRunner& bench) {
   StillWater water;
   water.time = bench.pick(12.0, 57.0);  // 57: ten seconds of 0.3 m of water
   water.per_depth = 30.0;
@@ -28,7 +28,7 @@ CaseResult still_recommended(StabilityBench& bench) {
   return result;
 }
 
-CaseResult still_paper(StabilityBench& bench) {
+CaseResult still_paper(CaseRunner& bench) {
   StillWater water;
   water.time = bench.pick(12.0, 57.0);
   water.per_depth = bench.pick(15.0, 30.0);
@@ -48,7 +48,7 @@ CaseResult still_paper(StabilityBench& bench) {
   return result;
 }
 
-CaseResult still_at_sound_ratio(StabilityBench& bench, double ratio, double gate) {
+CaseResult still_at_sound_ratio(CaseRunner& bench, double ratio, double gate) {
   StillWater water;
   water.sound_ratio = ratio;
   water.per_depth = 10.0;
@@ -62,11 +62,11 @@ CaseResult still_at_sound_ratio(StabilityBench& bench, double ratio, double gate
   }
   return result;
 }
-CaseResult sound_2(StabilityBench& b) { return still_at_sound_ratio(b, 2, 0.0); }
-CaseResult sound_5(StabilityBench& b) { return still_at_sound_ratio(b, 5, 0.05); }
-CaseResult sound_10(StabilityBench& b) { return still_at_sound_ratio(b, 10, 0.02); }
-CaseResult sound_100(StabilityBench& b) { return still_at_sound_ratio(b, 100, 0.02); }
-CaseResult sound_400(StabilityBench& b) { return still_at_sound_ratio(b, 400, 0.02); }
+CaseResult sound_2(CaseRunner& b) { return still_at_sound_ratio(b, 2, 0.0); }
+CaseResult sound_5(CaseRunner& b) { return still_at_sound_ratio(b, 5, 0.05); }
+CaseResult sound_10(CaseRunner& b) { return still_at_sound_ratio(b, 10, 0.02); }
+CaseResult sound_100(CaseRunner& b) { return still_at_sound_ratio(b, 100, 0.02); }
+CaseResult sound_400(CaseRunner& b) { return still_at_sound_ratio(b, 400, 0.02); }
 
 /// Largest difference of the dimensionless energies of two runs of one scene in other units.
 double series_difference(const CaseRun& a, const StillWater& of_a, const CaseRun& b,
@@ -102,7 +102,7 @@ Json falling_water(const StillWater& water, Json scheme) {
   return scene;
 }
 
-CaseResult same_in_other_units(StabilityBench& bench, std::span<const OtherUnits> others) {
+CaseResult same_in_other_units(CaseRunner& bench, std::span<const OtherUnits> others) {
   const auto sized = [](StillWater water) {
     water.per_depth = 8.0;
     water.time = 2.0;
@@ -120,24 +120,24 @@ CaseResult same_in_other_units(StabilityBench& bench, std::span<const OtherUnits
   }
   return result;
 }
-CaseResult gravity_scales(StabilityBench& bench) {
+CaseResult gravity_scales(CaseRunner& bench) {
   const std::array others{OtherUnits{"g x 1e-6", {.gravity = 9.81e-6}},
                           OtherUnits{"g x 1e6", {.gravity = 9.81e6}}};
   return same_in_other_units(bench, others);
 }
-CaseResult length_scales(StabilityBench& bench) {
+CaseResult length_scales(CaseRunner& bench) {
   const std::array others{OtherUnits{"length x 1e-7", {.depth = 1e-7}},
                           OtherUnits{"length x 1e5", {.depth = 1e5}}};
   return same_in_other_units(bench, others);
 }
-CaseResult density_scales(StabilityBench& bench) {
+CaseResult density_scales(CaseRunner& bench) {
   const std::array others{OtherUnits{"density x 1e-9", {.density = 1e-6}},
                           OtherUnits{"density x 1e3", {.density = 1e6}}};
   return same_in_other_units(bench, others);
 }
 
 /// Noise at 3 % below and above the predicted limits: how many verdicts differ.
-CaseResult limits(StabilityBench&) {
+CaseResult limits(CaseRunner&) {
   CaseResult result;
   double wrong = 0;
   for (const Integrator integrator :
@@ -177,7 +177,7 @@ double share_in_disorder(Method m) {
 }
 
 /// Particles out of order have neighbours nearer than a lattice has, and so faster waves.
-CaseResult limits_in_disorder(StabilityBench&) {
+CaseResult limits_in_disorder(CaseRunner&) {
   struct Choice {
     std::string_view name;
     KernelKind kernel;
@@ -204,7 +204,7 @@ CaseResult limits_in_disorder(StabilityBench&) {
   return result;
 }
 
-CaseResult undamped_leap_frog(StabilityBench& bench) {
+CaseResult undamped_leap_frog(CaseRunner& bench) {
   StillWater water;
   water.per_depth = 10.0;
   water.time = 60.0;
@@ -216,7 +216,7 @@ CaseResult undamped_leap_frog(StabilityBench& bench) {
   return result;
 }
 
-CaseResult zero_pressure_start(StabilityBench& bench) {
+CaseResult zero_pressure_start(CaseRunner& bench) {
   StillWater water;
   water.per_depth = bench.pick(15.0, 40.0);
   water.time = bench.pick(20.0, 40.0);
@@ -230,7 +230,7 @@ CaseResult zero_pressure_start(StabilityBench& bench) {
   return result;
 }
 
-CaseResult tall_column(StabilityBench& bench) {
+CaseResult tall_column(CaseRunner& bench) {
   StillWater water;
   water.width = 0.05;
   water.per_depth = bench.pick(120.0, 240.0);

@@ -9,8 +9,8 @@
 namespace sluice {
 namespace {
 
-PictureFrame unit_square(int pixels) {
-  PictureFrame how;
+PictureView unit_square(int pixels) {
+  PictureView how;
   how.view = {Vec::Zero(), Vec::Ones()};
   how.diameter = 0.1;
   how.low = 0.0;
@@ -19,15 +19,15 @@ PictureFrame unit_square(int pixels) {
   return how;
 }
 
-Frame frame_of(std::vector<float> x, std::vector<float> y, std::vector<float> pressure) {
-  Frame frame;
+Snapshot frame_of(std::vector<float> x, std::vector<float> y, std::vector<float> pressure) {
+  Snapshot frame;
   frame.x = std::move(x);
   frame.y = std::move(y);
   frame.pressure = std::move(pressure);
   return frame;
 }
 
-Picture drawn(const Frame& frame, const PictureFrame& how) {
+Picture drawn(const Snapshot& frame, const PictureView& how) {
   Picture picture = blank_picture(how);
   draw_particles(picture, frame, how);
   return picture;

@@ -18,10 +18,10 @@ TEST(VtkFile, HasTheLayoutThatParaViewReads) {
     GTEST_SKIP() << "there is no " << python << " with h5py here";
   }
   const TemporaryFolder folder;
-  Frame frame = make_test_frame(100000);
+  Snapshot frame = make_test_snapshot(100000);
   frame.origin_x = 1e5;
   write_vtk(folder / vtk_name("frames/frame-000012.h5"), frame);
-  write_vtk(folder / "empty.hdf", Frame{});
+  write_vtk(folder / "empty.hdf", Snapshot{});
   const fs::path script = fs::path(__FILE__).parent_path() / "check_vtk.py";
   const std::string command =
       python + " '" + script.string() + "' '" + folder.path().string() + "'";

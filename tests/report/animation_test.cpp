@@ -62,7 +62,7 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
   ~Folder() { fs::remove_all(path_); }
   void add(std::uint64_t index, float x) const {
-    Frame frame;
+    Snapshot frame;
     frame.time = 0.1 * static_cast<double>(index);
     frame.x = {x};
     frame.y = {0.1F};
@@ -70,7 +70,7 @@ class Folder {
     frame.vy = {4.0F};
     frame.pressure = {1000.0F};
     frame.id = {0};
-    write_frame(path_ / "frames" / frame_name(index), frame, Durability::process_crash);
+    write_snapshot(path_ / "frames" / snapshot_name(index), frame, Durability::process_crash);
   }
   [[nodiscard]] const fs::path& path() const { return path_; }
 
@@ -83,7 +83,7 @@ Report report_of(Scene scene) { return make_report(scene, {}, nullptr); }
 TEST(Animation, IsOnePngWithAPictureForEachSnapshotAndLeavesOutWhatCannotBeRead) {
   const Folder folder;
   for (const std::uint64_t index : {0U, 1U, 2U, 3U}) folder.add(index, 0.1F);
-  std::ofstream(folder.path() / "frames" / frame_name(4)) << "no frame";
+  std::ofstream(folder.path() / "frames" / snapshot_name(4)) << "no frame";
   const std::string png = animation_png(folder.path(), report_of(test_scene()), Quantity::pressure);
   const std::vector<std::string> types = chunk_types(png);
   EXPECT_EQ(types.front(), "IHDR");
@@ -115,7 +115,7 @@ TEST(PngAnimation, NumbersItsControlsAndPicturesInOneSequence) {
 
 TEST(Picture, DrawsWallsAndObstaclesGreyAndTheGateAsFarAsItIsStillThere) {
   const Scene scene = test_scene();
-  PictureFrame how;
+  PictureView how;
   how.view = picture_view(scene, std::nullopt);
   how.diameter = 0.02;
   how.width = 400;
@@ -146,7 +146,7 @@ TEST(Picture, FarFromZeroCountsItsAxisFromWholeMetres) {
   scene.tank.reset();
   scene.gate.reset();
   scene.obstacles.clear();
-  Frame frame;
+  Snapshot frame;
   frame.origin_x = 1e5;
   frame.x = {0.0F, 0.6F};
   frame.y = {0.0F, 0.3F};
@@ -169,7 +169,7 @@ TEST(PictureTimes, AreThoseOfTheSceneByTheNearestSnapshot) {
   for (std::uint64_t index = 0; index <= 10; ++index) folder.add(index, 0.1F);
   const Report report = report_of(test_scene(R"(, "pictures": [0.29, 0.31, 0.72, 99])"));
   EXPECT_EQ(names_of(picture_files(folder.path(), report)),
-            (std::vector<std::string>{frame_name(3), frame_name(7), frame_name(10)}));
+            (std::vector<std::string>{snapshot_name(3), snapshot_name(7), snapshot_name(10)}));
 }
 
 TEST(PictureTimes, OtherwiseSpreadFromFirstToLastAndHoldTheHighestPressure) {
@@ -182,8 +182,8 @@ TEST(PictureTimes, OtherwiseSpreadFromFirstToLastAndHoldTheHighestPressure) {
   sensor.highest_at = 0.11;
   report.sensors = {sensor};
   EXPECT_EQ(names_of(picture_files(folder.path(), report)),
-            (std::vector<std::string>{frame_name(0), frame_name(1), frame_name(3), frame_name(6),
-                                      frame_name(9)}));
+            (std::vector<std::string>{snapshot_name(0), snapshot_name(1), snapshot_name(3),
+                                      snapshot_name(6), snapshot_name(9)}));
 }
 
 TEST(PictureTimes, WithinASceneChangeNothingThatARunIsBoundTo) {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/report/evidence.hpp"
+#include "engine/report/comparison.hpp"
 #include "sluice/reference_texts.hpp"
 
 namespace sluice {

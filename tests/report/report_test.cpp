@@ -136,11 +136,11 @@ TEST(Report, FiltersEachSensorBesideOthersAsAlone) {
 
 TEST(Report, SaysThatNoExperimentMatchesAndThatTheRunHasNotEnded) {
   const Report report = make_report(scene_of_no_experiment(), {probe()}, nullptr);
-  EXPECT_FALSE(report.evidence);
+  EXPECT_FALSE(report.comparison);
   const std::string text = report_text(report);
   EXPECT_NE(text.find("no experiment"), std::string::npos);
   EXPECT_NE(text.find("has not ended"), std::string::npos);
-  EXPECT_TRUE(report_json(report).at("evidence").is_null());
+  EXPECT_TRUE(report_json(report).at("comparison").is_null());
   EXPECT_TRUE(report_json(report).at("outcome").is_null());
 }
 
@@ -154,7 +154,7 @@ TEST(Report, SurvivesAnOutcomeOfAnotherLayout) {
 
 nlohmann::ordered_json outcome_of(double steps_of_attempt, double core_seconds) {
   nlohmann::ordered_json outcome{{"state", "completed"}, {"step", 400}, {"particles", 90}};
-  outcome["retired"] = {{"overtopped", 9}, {"leaked", 1}};
+  outcome["removed"] = {{"overtopped", 9}, {"leaked", 1}};
   outcome["threads"] = 2;
   outcome["this_attempt"] = {
       {"seconds", 7.0}, {"steps", steps_of_attempt}, {"core_seconds", core_seconds}};
@@ -277,8 +277,8 @@ TEST(Report, ComparesASensorWithTheCurveThatItsSceneGives) {
   level.time = {0.0, 1.0, 2.0, 4.0};
   level.values = {1.0, 1.0, 1.0, 1.0};
   const Report report = make_report(scene, {level}, nullptr);
-  ASSERT_TRUE(report.series_evidence);
-  const CurveEvidence& curve = report.series_evidence->curves.at(0);
+  ASSERT_TRUE(report.series_comparison);
+  const CurveComparison& curve = report.series_comparison->curves.at(0);
   EXPECT_NEAR(*curve.relative_l2, 1.0, 1e-12);
   EXPECT_NEAR(*curve.rms_difference, 0.5, 1e-12);
   EXPECT_NEAR(*report.error(), 1.0, 1e-12);

@@ -78,17 +78,17 @@ def check(folder, example, figures):
     scene, job = coarse(example), folder / example
     (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
     sluice("run", folder / "scene.json", "--folder", job, "--progress", "none")
-    evidence = json.loads(sluice("report", job, "--json"))["evidence"]
-    curves = {one["reference"]: curve_of(job, one["sensor"], scene) for one in evidence["pressures"]}
+    comparison = json.loads(sluice("report", job, "--json"))["comparison"]
+    curves = {one["reference"]: curve_of(job, one["sensor"], scene) for one in comparison["pressures"]}
     shift = figures["event_arrival"]["P1"] - arrival(*curves["P1"])
-    assert abs(shift - evidence["pressure_shift"]) < 1e-6, (example, shift, evidence["pressure_shift"])
-    for one in evidence["pressures"]:
+    assert abs(shift - comparison["pressure_shift"]) < 1e-6, (example, shift, comparison["pressure_shift"])
+    for one in comparison["pressures"]:
         name = one["reference"]
         times, values = curves[name]
         for moved, key in ((shift, "relative_l2"), (0.0, "relative_l2_not_shifted")):
             ours = error([t + moved for t in times], values, figures["event"]["t"], figures["event"][name])
             assert abs(ours - one[key]) < 1e-6, (example, name, key, ours, one[key])
-    print(f"{example}: {len(curves)} sensors, shift {shift:+.4f} T, mean error {evidence['mean_relative_l2']:.4f}")
+    print(f"{example}: {len(curves)} sensors, shift {shift:+.4f} T, mean error {comparison['mean_relative_l2']:.4f}")
 
 
 reference = json.loads((root / "schemas/references/lobovsky2014_h300.json").read_text(encoding="utf-8"))

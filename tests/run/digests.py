@@ -50,8 +50,8 @@ def digests_of(program, folder, scene, target, precision, threads):
         return f"exit-{ended.returncode}", ended.stderr.strip().replace("\n", " ")
     with open(os.path.join(job, "outcome.json"), encoding="utf-8") as stream:
         outcome = json.load(stream)
-    series = json.dumps(outcome["series_digests"], sort_keys=True)
-    return outcome["physics_digest"][:32], hashlib.sha256(series.encode()).hexdigest()[:32]
+    series = json.dumps(outcome["digests"]["series"], sort_keys=True)
+    return outcome["digests"]["physics"][:32], hashlib.sha256(series.encode()).hexdigest()[:32]
 
 
 def read_list(path):

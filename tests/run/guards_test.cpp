@@ -58,8 +58,8 @@ TEST(Guards, LetACalmStepPass) {
   EXPECT_FALSE(warning(calm()));
 }
 
-void set(StepFacts& facts, RetireCause cause, std::size_t count) {
-  facts.retired[static_cast<std::size_t>(cause)] = count;
+void set(StepFacts& facts, RemovalCause cause, std::size_t count) {
+  facts.removed[static_cast<std::size_t>(cause)] = count;
 }
 
 TEST(Guards, StopAnEnergyThatIsNoNumber) {
@@ -72,10 +72,10 @@ TEST(Guards, StopAnEnergyThatIsNoNumber) {
 
 TEST(Guards, LetAHalfPercentBeExcludedAndStopAtMore) {
   StepFacts facts = calm();
-  set(facts, RetireCause::too_dense, 60);
-  set(facts, RetireCause::too_fast, 40);
+  set(facts, RemovalCause::too_dense, 60);
+  set(facts, RemovalCause::too_fast, 40);
   EXPECT_FALSE(failure(facts));
-  set(facts, RetireCause::not_finite, 1);
+  set(facts, RemovalCause::not_finite, 1);
   const auto diagnosis = failure(facts);
   ASSERT_TRUE(diagnosis);
   EXPECT_EQ(diagnosis->value, 101.0);
@@ -86,7 +86,7 @@ TEST(Guards, LetAHalfPercentBeExcludedAndStopAtMore) {
 
 TEST(Guards, StopMoreThanOneInAThousandExcludedWhileSoundCrossesTheFluid) {
   StepFacts facts = calm();
-  set(facts, RetireCause::too_thin, 21);
+  set(facts, RemovalCause::too_thin, 21);
   facts.excluded_at_once = 20;
   EXPECT_FALSE(failure(facts));
   facts.excluded_at_once = 21;
@@ -135,21 +135,21 @@ TEST(Guards, WarnAboveThreeTenthsOfTheSoundSpeed) {
 
 TEST(Guards, WarnOfMoreThanOneExcludedInTenThousand) {
   StepFacts facts = calm();
-  set(facts, RetireCause::too_dense, 2);
+  set(facts, RemovalCause::too_dense, 2);
   EXPECT_FALSE(warning(facts));
-  set(facts, RetireCause::too_dense, 3);
+  set(facts, RemovalCause::too_dense, 3);
   EXPECT_TRUE(warning(facts));
 }
 
 TEST(Guards, WarnAtOneLeakInAThousandAndStopAtOneInAHundred) {
   StepFacts facts = calm();
-  set(facts, RetireCause::leaked, 20);
+  set(facts, RemovalCause::leaked, 20);
   EXPECT_FALSE(warning(facts));
-  set(facts, RetireCause::leaked, 21);
+  set(facts, RemovalCause::leaked, 21);
   EXPECT_TRUE(warning(facts));
-  set(facts, RetireCause::leaked, 200);
+  set(facts, RemovalCause::leaked, 200);
   EXPECT_FALSE(failure(facts));
-  set(facts, RetireCause::leaked, 201);
+  set(facts, RemovalCause::leaked, 201);
   EXPECT_TRUE(failure(facts));
 }
 
@@ -176,14 +176,14 @@ TEST(Guards, CountWhatLeftWithTheEnergyOfTheFluid) {
 
 TEST(EnergyThatLeft, IsAllOfALeakButThePotentialEnergyAloneOfAnExclusion) {
   const Method method = paper_method();
-  Retired retired;
-  retired.y = -2.0;
-  retired.vx = 3.0;
-  retired.cause = RetireCause::leaked;
+  RemovedParticle removed;
+  removed.y = -2.0;
+  removed.vx = 3.0;
+  removed.cause = RemovalCause::leaked;
   const double mass = method.particle_mass();
-  EXPECT_DOUBLE_EQ(energy_that_left(method, retired), mass * (4.5 - 2.0 * 9.81));
-  retired.cause = RetireCause::too_fast;
-  EXPECT_DOUBLE_EQ(energy_that_left(method, retired), -mass * 2.0 * 9.81);
+  EXPECT_DOUBLE_EQ(energy_that_left(method, removed), mass * (4.5 - 2.0 * 9.81));
+  removed.cause = RemovalCause::too_fast;
+  EXPECT_DOUBLE_EQ(energy_that_left(method, removed), -mass * 2.0 * 9.81);
 }
 
 TEST(Guards, StopClumpsButAllowAWiderSupportItsNeighbours) {
@@ -222,7 +222,7 @@ TEST(EnergyScale, OfAFluidAtRestWithoutGravityIsNotZero) {
 
 TEST(Diagnosis, TellsStepTimeValueLimitAndWhatToDo) {
   StepFacts facts = calm();
-  set(facts, RetireCause::too_fast, 300);
+  set(facts, RemovalCause::too_fast, 300);
   const std::string text = NumericalFailure(*failure(facts)).what();
   for (const char* part : {"step 40", "t = 0.1 s", "300", "100", "too fast", "sound_speed"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;

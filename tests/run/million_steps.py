@@ -67,7 +67,7 @@ def outcome_of(folder):
 
 def what_counts(outcome):
     """What must not depend on kills."""
-    return [outcome[key] for key in ("state", "step", "time", "diagnosis", "retired", "digests")]
+    return [outcome[key] for key in ("state", "step", "time", "diagnosis", "removed", "digests")]
 
 
 def undisturbed(sluice, scene, folder, steps):
@@ -140,7 +140,7 @@ def main():
             storm, kills, resumed = disturbed(arguments.sluice, scene, root / "storm",
                                               arguments.steps, delays)
             same = what_counts(storm) == what_counts(calm)
-            held = calm["step"] == arguments.steps and not any(calm["retired"].values())
+            held = calm["step"] == arguments.steps and not any(calm["removed"].values())
             failed |= not same or kills < arguments.kills / 2
             failed |= example == arguments.scene and not held
             figures = ", ".join(f"{key} {value:.4g}" for key, value in drift(root / "storm").items())

@@ -110,8 +110,8 @@ def check_run(program, path, folder, scene):
         return outcome["diagnosis"]["reason"]
     require(checkpoints, "completed without a checkpoint")
     require(outcome["state"] == "completed" and outcome["time"] >= scene["end_time"], "not at its end")
-    retired = outcome["retired"]
-    require(outcome["particles"] + sum(retired.values()) == started["particles"],
+    removed = outcome["removed"]
+    require(outcome["particles"] + sum(removed.values()) == started["particles"],
             "alive + overtopped + leaked + excluded is not what started")
     check_energy(outcome)
     return "completed"

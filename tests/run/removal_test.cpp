@@ -69,8 +69,8 @@ TEST(EnergyGuard, DoesNotDependOnTheOrigin) {
     }
     const GuardBaselines base = initial_baselines(method, state, energy);
     // The third leaves as it is: nothing has grown.
-    Retired third;
-    third.cause = RetireCause::overtopped;
+    RemovedParticle third;
+    third.cause = RemovalCause::overtopped;
     third.x = state.particles.x[2];
     third.y = state.particles.y[2];
     const double gone = energy_that_left(method, third);
@@ -126,10 +126,10 @@ TEST(Exclusion, OfOneParticleEndsNoRunAndIsToldOnceWithItsPlace) {
     EXPECT_LE(simulation.excluded(), 8U);
     EXPECT_EQ(std::count(listener.names.begin(), listener.names.end(), "excluded"),
               static_cast<std::ptrdiff_t>(simulation.excluded()));
-    const Retired& first = simulation.solver().retired()[0];
+    const RemovedParticle& first = simulation.solver().removed()[0];
     EXPECT_NE(listener.messages[0].find("step " + std::to_string(first.step)), std::string::npos);
     EXPECT_NE(listener.messages[0].find("limit"), std::string::npos);
-    EXPECT_EQ(simulation.solver().particle_count() + simulation.solver().retired().size(), 400U);
+    EXPECT_EQ(simulation.solver().particle_count() + simulation.solver().removed().size(), 400U);
   }
 }
 

@@ -100,7 +100,7 @@ def run(program, folder, text, target):
 
 
 def error_of(report):
-    return ((report or {}).get("evidence") or {}).get("mean_relative_l2")
+    return ((report or {}).get("comparison") or {}).get("mean_relative_l2")
 
 
 def middle(values):
@@ -108,14 +108,14 @@ def middle(values):
 
 
 def counts(outcomes, cause):
-    values = [one["retired"][cause] for one in outcomes if one and "retired" in one]
+    values = [one["removed"][cause] for one in outcomes if one and "removed" in one]
     return f"{statistics.median(values):g} ({max(values)})" if values else "-"
 
 
 def row(name, target, precision, results):
     outcomes = [outcome for outcome, _ in results]
     failed = [one for one in outcomes if one is None or one["state"] != "completed"]
-    errors = [(error_of(report), outcome["retired"]["excluded"]) for outcome, report in results
+    errors = [(error_of(report), outcome["removed"]["excluded"]) for outcome, report in results
               if outcome and error_of(report) is not None]
     all_errors = [error for error, _ in errors]
     spread = f"{min(all_errors):.3f}-{max(all_errors):.3f}" if all_errors else "-"

@@ -183,7 +183,7 @@ TEST(Simulation, AnOverflowingTankIsNoFailure) {
   // Particles that leave over the rim are counted apart from those that pass through a wall.
   Simulation simulation(small_dam_break(), {1, ""});
   while (!simulation.finished()) simulation.step();
-  EXPECT_EQ(simulation.overtopped() + simulation.leaked(), simulation.solver().retired().size());
+  EXPECT_EQ(simulation.overtopped() + simulation.leaked(), simulation.solver().removed().size());
 }
 
 }  // namespace

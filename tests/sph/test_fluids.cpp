@@ -112,10 +112,10 @@ void expect_same_bits(const SolverState& a, const SolverState& b, const std::str
   EXPECT_EQ(a.step, b.step) << what;
   EXPECT_EQ(std::memcmp(&a.time, &b.time, sizeof(double)), 0) << what << ", time";
   EXPECT_EQ(std::memcmp(&a.time_step, &b.time_step, sizeof(double)), 0) << what << ", time step";
-  ASSERT_EQ(a.retired.size(), b.retired.size()) << what;
-  for (std::size_t k = 0; k < a.retired.size(); ++k) {
-    const Retired& one = a.retired[k];
-    const Retired& other = b.retired[k];
+  ASSERT_EQ(a.removed.size(), b.removed.size()) << what;
+  for (std::size_t k = 0; k < a.removed.size(); ++k) {
+    const RemovedParticle& one = a.removed[k];
+    const RemovedParticle& other = b.removed[k];
     EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.x, one.y, one.vx, one.vy,
                        one.density_excess),
               std::tie(other.id, other.cause, other.step, other.time, other.x, other.y, other.vx,

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Limits = std::numeric_limits<double>;
 
-bool same(const Retired& a, const Retired& b) {
+bool same(const RemovedParticle& a, const RemovedParticle& b) {
   return same_bits(a.id, b.id) && a.cause == b.cause && a.step == b.step &&
          same_bits(a.time, b.time) && same_bits(a.x, b.x) && same_bits(a.y, b.y) &&
          same_bits(a.vx, b.vx) && same_bits(a.vy, b.vy) &&
@@ -95,17 +95,18 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
           awkward_values(count, 100.0 * static_cast<double>(i));
     }
   }
-  checkpoint.solver.retired = {{3.0, RetireCause::overtopped, 11, 0.011, 1.5, 0.61, 0.5, -1.5, 2.5},
-                               {5.0, RetireCause::leaked, 12, 0.012, -0.1, -0.0, -0.0, 3.5, -4.5},
-                               {6.0, RetireCause::too_thin, 13, 0.013, 0.1, 0.2, 5.5, 6.5, -301.0}};
+  checkpoint.solver.removed = {
+      {3.0, RemovalCause::overtopped, 11, 0.011, 1.5, 0.61, 0.5, -1.5, 2.5},
+      {5.0, RemovalCause::leaked, 12, 0.012, -0.1, -0.0, -0.0, 3.5, -4.5},
+      {6.0, RemovalCause::too_thin, 13, 0.013, 0.1, 0.2, 5.5, 6.5, -301.0}};
   checkpoint.samples = make_samples();
   checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0, -60.0, 70.0, 80.0, 90.0};
-  checkpoint.next_frame = 4;
+  checkpoint.next_snapshot = 4;
   return checkpoint;
 }
 
-Frame make_test_frame(std::size_t count) {
-  Frame frame{17, 0.25, {}, {}, {}, {}, {}, {}};
+Snapshot make_test_snapshot(std::size_t count) {
+  Snapshot frame{17, 0.25, {}, {}, {}, {}, {}, {}};
   for (std::size_t i = 0; i < count; ++i) {
     const auto value = static_cast<float>(i) / 3.0F;
     frame.x.push_back(value);
@@ -169,9 +170,9 @@ bool same_bits(const Checkpoint& a, const Checkpoint& b) {
          a.integrator == b.integrator && a.solver.step == b.solver.step &&
          same_bits(a.solver.time, b.solver.time) &&
          same_bits(a.solver.time_step, b.solver.time_step) &&
-         same_lists(a.solver.retired, b.solver.retired, same) &&
+         same_lists(a.solver.removed, b.solver.removed, same) &&
          same_lists(a.samples, b.samples, same_tables) && a.guards == b.guards &&
-         a.next_frame == b.next_frame;
+         a.next_snapshot == b.next_snapshot;
 }
 
 Bytes read_bytes(const fs::path& path) {

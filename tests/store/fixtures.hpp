@@ -9,7 +9,7 @@
 
 #include "engine/store/disk/file_system.hpp"
 #include "engine/store/files/checkpoint.hpp"
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice::test {
 
@@ -30,11 +30,11 @@ class TemporaryFolder {
 };
 
 /// A checkpoint with every part filled: `count` particles, values of every kind of double (-0.0,
-/// denormals, extremes), series with and without samples and with dry ones, retired particles.
+/// denormals, extremes), series with and without samples and with dry ones, removed particles.
 [[nodiscard]] Checkpoint make_checkpoint(std::uint64_t step, std::size_t count = 50,
                                          Integrator integrator = Integrator::modified_leap_frog);
 [[nodiscard]] std::vector<SampleTable> make_samples();
-[[nodiscard]] Frame make_test_frame(std::size_t count);
+[[nodiscard]] Snapshot make_test_snapshot(std::size_t count);
 
 /// Runs `action`, which returns an exit status, in a child process. Its exit status, 99 when it
 /// threw, or -1 when a signal ended it.

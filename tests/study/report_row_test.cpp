@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 TEST(ReportRow, TakesErrorQuantitiesAndCostFromAReport) {
   const StudyRow row = row_of_report(Json::parse(R"({
     "error": 0.25,
-    "evidence": {
+    "comparison": {
       "pressures": [{"sensor": "P1", "relative_l2": 0.3,
                      "simulation": {"impulse": 4.5, "plateau": null}}],
       "front": {"delay": -0.1}},
@@ -29,6 +29,17 @@ TEST(ReportRow, TakesErrorQuantitiesAndCostFromAReport) {
   EXPECT_TRUE(row.reason.empty());
 }
 
+TEST(ReportRow, TakesTheFormerWordsOfOlderReports) {
+  const auto quantities = [](const char* text) {
+    return row_of_report(Json::parse(text)).quantities;
+  };
+  EXPECT_EQ(quantities(R"({"evidence": {"front": {"delay": -0.1}}})"),
+            quantities(R"({"comparison": {"front": {"delay": -0.1}}})"));
+  EXPECT_EQ(quantities(R"({"series_evidence": {"curves": [{"sensor": "a", "mean": 2}]}})"),
+            quantities(R"({"series_comparison": {"curves": [{"sensor": "a", "mean": 2}]}})"));
+  EXPECT_EQ(quantities(R"({"evidence": {"front": {"delay": -0.1}}})").size(), 1u);
+}
+
 TEST(ReportRow, OfAReportWithoutAnErrorSaysWhyThereIsNone) {
   const StudyRow row = row_of_report(Json::parse(R"({"error": null})"));
   EXPECT_FALSE(row.error);
@@ -36,9 +47,9 @@ TEST(ReportRow, OfAReportWithoutAnErrorSaysWhyThereIsNone) {
 }
 
 TEST(ReportRow, OfAnythingElseIsEmptyAndNoCrash) {
-  for (const char* text : {"null", "[]", "3", "\"x\"", R"({"error": "x", "evidence": "x"})",
-                           R"({"evidence": {"pressures": {"a": 1}}, "cost": []})",
-                           R"({"series_evidence": {"curves": [1, null, "x"]}})"}) {
+  for (const char* text : {"null", "[]", "3", "\"x\"", R"({"error": "x", "comparison": "x"})",
+                           R"({"comparison": {"pressures": {"a": 1}}, "cost": []})",
+                           R"({"series_comparison": {"curves": [1, null, "x"]}})"}) {
     EXPECT_FALSE(row_of_report(Json::parse(text)).error) << text;
   }
 }

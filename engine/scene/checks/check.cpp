@@ -1,4 +1,5 @@
 #include "engine/scene/checks/check.hpp"
+#include "engine/scene/geometry/geometry.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@
 #include "engine/scene/checks/check_solids.hpp"
 #include "engine/scene/checks/warnings.hpp"
 #include "engine/scene/forecast/stability.hpp"
-#include "engine/scene/forecast/work.hpp"
+#include "engine/scene/forecast/workload.hpp"
 #include "engine/scene/format/describe.hpp"
 
 namespace sluice {
@@ -23,18 +24,18 @@ constexpr double kMaxFrames = 1e5;
 // Below this the fluid's own weight compresses it by a quarter.
 constexpr double kMinSoundRatio = 2.0;
 
-void check_gravity(const Document& document, Problems& problems) {
-  if (!problems.clean({"/gravity", "/material"}) || document.sound_speed) return;
-  if (document.gravity.value_or(Vec::Zero()).isZero(0.0)) {
+void check_gravity(const WrittenScene& written, Problems& problems) {
+  if (!problems.clean({"/gravity", "/material"}) || written.sound_speed) return;
+  if (written.gravity.value_or(Vec::Zero()).isZero(0.0)) {
     problems.add("/material/sound_speed",
                  "is missing; must be given where there is no gravity to derive it from: about "
                  "ten times the largest flow speed");
   }
 }
 
-void check_sound_speed(const Scene& scene, const Document& document, Problems& problems) {
+void check_sound_speed(const Scene& scene, const WrittenScene& written, Problems& problems) {
   const double c = scene.method.sound_speed;
-  if (!document.sound_speed && (c < kSoundSpeed.low || c > kSoundSpeed.high)) {
+  if (!written.sound_speed && (c < kSoundSpeed.low || c > kSoundSpeed.high)) {
     problems.add("/gravity", fmt::format("asks for a sound speed of {:.6g} m/s; must be {}; scale "
                                          "the scene",
                                          c, to_text(kSoundSpeed, "m/s")));
@@ -206,10 +207,10 @@ void check_curve(const ReferenceCurve& curve, const std::string& pointer, const 
   }
 }
 
-void check_reference(const Document& document, Problems& problems) {
-  const auto& reference = document.scene.reference;
+void check_reference(const WrittenScene& written, Problems& problems) {
+  const auto& reference = written.scene.reference;
   if (!reference || !problems.clean({"/reference", "/sensors"})) return;
-  const bool scaled = document.scene.scales && !document.gravity.value_or(Vec::Zero()).isZero(0.0);
+  const bool scaled = written.scene.scales && !written.gravity.value_or(Vec::Zero()).isZero(0.0);
   const bool wants_scales = reference->kind == ReferenceKind::experiment ||
                             (reference->kind == ReferenceKind::series &&
                              reference->units == ReferenceUnits::dimensionless);
@@ -219,33 +220,34 @@ void check_reference(const Document& document, Problems& problems) {
                  "make its series so: add the keys scales and gravity");
   }
   for (std::size_t i = 0; i < reference->curves.size(); ++i) {
-    check_curve(reference->curves[i], at("/reference/curves", i), document.scene, problems);
+    check_curve(reference->curves[i], at("/reference/curves", i), written.scene, problems);
   }
 }
 
 }  // namespace
 
-void check(const Document& document, const CheckedAs& as, Problems& problems, Problems& warnings) {
-  const Scene& written = document.scene;
-  check_polygons(written, problems);
-  check_sizes(written, problems);
-  check_tank(written, problems);
-  check_gravity(document, problems);
-  check_names(written, problems);
-  check_reference(document, problems);
+void check(const WrittenScene& written, const CheckedAs& as, Problems& problems,
+           Problems& warnings) {
+  const Scene& given = written.scene;
+  check_polygons(given, problems);
+  check_sizes(given, problems);
+  check_tank(given, problems);
+  check_gravity(written, problems);
+  check_names(given, problems);
+  check_reference(written, problems);
   if (!problems.clean(
           {"/tank", "/fluid", "/obstacles", "/gravity", "/material", "/resolution", "/numerics"})) {
     return;
   }
   const bool placed = problems.clean({"/domain", "/end_time"});
-  const Scene scene = resolve(document);
-  check_sound_speed(scene, document, problems);
+  const Scene scene = resolve(written);
+  check_sound_speed(scene, written, problems);
   check_particle_count(scene, problems);
   check_gate(scene, problems);
   check_wall_shear(scene, problems);
   check_shifting(scene, problems);
   if (!placed) return;
-  check_domain(scene, document, problems);
+  check_domain(scene, written, problems);
   if (problems.clean({"/domain"})) check_sensors(scene, problems);
   if (problems.clean({"/material"})) check_work(scene, problems);
   if (problems.clean({"/material", "/end_time", "/resolution"}) &&

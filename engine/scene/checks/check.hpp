@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/format/written_scene.hpp"
 #include "engine/scene/model/problems.hpp"
 
 namespace sluice {
@@ -14,6 +14,7 @@ struct CheckedAs {
   StabilityCheck stability = StabilityCheck::refuse;
   SceneOrigin origin = SceneOrigin::user;
 };
-void check(const Document& document, const CheckedAs& as, Problems& problems, Problems& warnings);
+void check(const WrittenScene& written, const CheckedAs& as, Problems& problems,
+           Problems& warnings);
 
 }  // namespace sluice

@@ -40,7 +40,7 @@ void for_each_shape(const Scene& scene, const Problems& problems, const F& f) {
 }
 
 /// Everything that must lie in the domain: the tank with its walls, else the fluid and obstacles.
-void check_domain_holds(const Scene& scene, const Document& document, Problems& problems) {
+void check_domain_holds(const Scene& scene, const WrittenScene& written, Problems& problems) {
   const Box& domain = scene.method.domain;
   if (scene.tank) {
     const double walls = static_cast<double>(wall_layers(scene.method)) * scene.method.spacing;
@@ -57,7 +57,7 @@ void check_domain_holds(const Scene& scene, const Document& document, Problems& 
     if (within(bounds(shape), domain)) return;
     problems.add(pointer,
                  fmt::format("reaches from {}; must lie in /domain, {}{}", show(bounds(shape)),
-                             show(domain), document.domain ? "" : " (the default)"));
+                             show(domain), written.domain ? "" : " (the default)"));
   });
 }
 
@@ -137,7 +137,7 @@ void check_gate(const Scene& scene, Problems& problems) {
   }
 }
 
-void check_domain(const Scene& scene, const Document& document, Problems& problems) {
+void check_domain(const Scene& scene, const WrittenScene& written, Problems& problems) {
   const Box& domain = scene.method.domain;
   const double dx = scene.method.spacing;
   if ((domain.min.array() >= domain.max.array()).any()) {
@@ -158,11 +158,11 @@ void check_domain(const Scene& scene, const Document& document, Problems& proble
     problems.add("/domain",
                  fmt::format("is {}{}; each side may be at most {:.0e} and each corner at most "
                              "{:.0e} spacings of {:.6g} m from the origin",
-                             show(domain), document.domain ? "" : " (the default)", kMaxDomainCells,
+                             show(domain), written.domain ? "" : " (the default)", kMaxDomainCells,
                              kMaxOffsetCells, dx));
     return;
   }
-  check_domain_holds(scene, document, problems);
+  check_domain_holds(scene, written, problems);
 }
 
 }  // namespace sluice

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/format/written_scene.hpp"
 #include "engine/scene/model/problems.hpp"
 
 namespace sluice {
@@ -19,7 +19,7 @@ void check_tank(const Scene& scene, Problems& problems);
 void check_gate(const Scene& scene, Problems& problems);
 /// The domain is a box, not vast, and holds the tank with its walls, else every shape. `scene` is
 /// resolved; `document` tells whether the domain was given.
-void check_domain(const Scene& scene, const Document& document, Problems& problems);
+void check_domain(const Scene& scene, const WrittenScene& written, Problems& problems);
 
 /// "(0, 0) to (2, 1) m".
 [[nodiscard]] std::string show(const Box& box);

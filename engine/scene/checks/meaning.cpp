@@ -15,10 +15,10 @@ namespace {
 using nlohmann::json;
 
 /// Whether such a scene was accepted and could run.
-bool worked(const Document& document) {
-  const bool falls = document.gravity && !document.gravity->isZero(0.0);
-  if (document.scene.fluid.empty() || !(falls || document.sound_speed)) return false;
-  const Scene scene = resolve(document);
+bool worked(const WrittenScene& written) {
+  const bool falls = written.gravity && !written.gravity->isZero(0.0);
+  if (written.scene.fluid.empty() || !(falls || written.sound_speed)) return false;
+  const Scene scene = resolve(written);
   if (!kSoundSpeed.contains(scene.method.sound_speed)) return false;
   const StabilityPrediction p = predict_stability(scene);
   return p.courant_limit > 0.0 && p.outlook != Outlook::unstable;

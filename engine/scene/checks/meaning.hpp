@@ -3,15 +3,15 @@
 #include <optional>
 #include <string>
 
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/format/written_scene.hpp"
 
 namespace sluice {
 
 /// A scene that names no scheme, read in each way that it can be meant.
 struct Meanings {
-  const Document& recommended;  ///< the scheme recommended with the keys that are named
-  const Document& paper;        ///< the scheme paper with them
-  const Document& before;       ///< no scheme: what versions that knew none read
+  const WrittenScene& recommended;  ///< the scheme recommended with the keys that are named
+  const WrittenScene& paper;        ///< the scheme paper with them
+  const WrittenScene& before;       ///< no scheme: what versions that knew none read
 };
 
 /// Whether the scene meant another method before there were schemes than it does now, and one that

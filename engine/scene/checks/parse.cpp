@@ -42,23 +42,23 @@ std::vector<std::string> pointers_of(const json& numerics) {
   return pointers;
 }
 
-Document read_document(const json& scene, std::optional<Scheme> scheme, Problems& problems) {
-  Document document(scheme);
-  document.scene.numerics.named = pointers_of(numerics_of(scene));
+WrittenScene read_written(const json& scene, std::optional<Scheme> scheme, Problems& problems) {
+  WrittenScene written(scheme);
+  written.scene.numerics.named = pointers_of(numerics_of(scene));
   Reader reader(scene, "", problems);
-  describe(reader, document);
+  describe(reader, written);
   reader.finish();
-  leave_out_excluded(document.scene.method, document.scene.numerics);
-  return document;
+  leave_out_excluded(written.scene.method, written.scene.numerics);
+  return written;
 }
 
 /// What a scene means that names no scheme; a problem where that cannot be told.
-Document read_without_scheme(const json& scene, SceneOrigin origin, Problems& problems) {
-  if (origin == SceneOrigin::job) return read_document(scene, std::nullopt, problems);
-  Document now = read_document(scene, Scheme::recommended, problems);
+WrittenScene read_without_scheme(const json& scene, SceneOrigin origin, Problems& problems) {
+  if (origin == SceneOrigin::job) return read_written(scene, std::nullopt, problems);
+  WrittenScene now = read_written(scene, Scheme::recommended, problems);
   if (!problems.empty()) return now;
-  Document before = read_document(scene, std::nullopt, problems);
-  const Document paper = read_document(scene, Scheme::paper, problems);
+  WrittenScene before = read_written(scene, std::nullopt, problems);
+  const WrittenScene paper = read_written(scene, Scheme::paper, problems);
   const Meanings meanings{now, paper, before};
   if (!has_two_meanings(meanings)) return now;
   if (origin == SceneOrigin::study) return before;
@@ -76,14 +76,14 @@ ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOr
   const auto former = use_present_words(*scene, kFormerSceneWords, problems);
 
   const json numerics = numerics_of(*scene);
-  const Document document =
+  const WrittenScene written =
       numerics.contains("scheme")
-          ? read_document(*scene, named_scheme(numerics).value_or(Scheme::recommended), problems)
+          ? read_written(*scene, named_scheme(numerics).value_or(Scheme::recommended), problems)
           : read_without_scheme(*scene, origin, problems);
-  if (scene->is_object()) check(document, {stability, origin}, problems, warnings);
+  if (scene->is_object()) check(written, {stability, origin}, problems, warnings);
 
   if (!problems.empty()) return {std::nullopt, at_written_places(problems.take(), former), {}};
-  return {resolve(document), {}, at_written_places(warnings.take(), former)};
+  return {resolve(written), {}, at_written_places(warnings.take(), former)};
 }
 
 ParseResult parse_job_scene(std::string_view text) {

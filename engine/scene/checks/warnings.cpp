@@ -1,4 +1,5 @@
 #include "engine/scene/checks/warnings.hpp"
+#include "engine/scene/geometry/geometry.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +7,8 @@
 #include <cmath>
 
 #include "engine/scene/forecast/stability.hpp"
-#include "engine/scene/forecast/work.hpp"
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/forecast/workload.hpp"
+#include "engine/scene/format/written_scene.hpp"
 
 namespace sluice {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "engine/scene/filling/initial.hpp"
 #include "engine/scene/filling/walls.hpp"
-#include "engine/scene/forecast/work.hpp"
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/forecast/workload.hpp"
+#include "engine/scene/format/written_scene.hpp"
 #include "engine/scene/geometry/geometry.hpp"
 #include "engine/sph/method/particles.hpp"
 #include "engine/sph/solver/machine_speed.hpp"

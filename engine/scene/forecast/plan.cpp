@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "engine/scene/filling/initial.hpp"
-#include "engine/scene/forecast/work.hpp"
+#include "engine/scene/forecast/workload.hpp"
 #include "engine/scene/format/json_text.hpp"
 #include "engine/scene/format/numerics_json.hpp"
 #include "engine/scene/model/vocabulary.hpp"

@@ -1,4 +1,5 @@
 #include "engine/scene/forecast/stability.hpp"
+#include "engine/scene/geometry/geometry.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/scene/forecast/scheme_analysis.hpp"
-#include "engine/scene/forecast/work.hpp"
+#include "engine/scene/forecast/workload.hpp"
 
 namespace sluice {
 namespace {

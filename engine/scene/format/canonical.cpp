@@ -9,9 +9,9 @@ namespace sluice {
 namespace {
 
 nlohmann::json to_json(const Scene& scene) {
-  Document document(scene);
+  WrittenScene written(scene);
   Writer writer;
-  describe(writer, document);
+  describe(writer, written);
   return writer.object();
 }
 

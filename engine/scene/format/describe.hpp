@@ -3,7 +3,7 @@
 #include <optional>
 #include <variant>
 
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/format/written_scene.hpp"
 #include "engine/scene/model/scene.hpp"
 #include "engine/scene/model/vocabulary.hpp"
 
@@ -401,10 +401,10 @@ void describe(Archive& a, SceneReference& reference) {
 }
 
 template <class Archive>
-void describe_material(Archive& a, Document& document) {
-  a.number("density", document.scene.method.reference_density,
+void describe_material(Archive& a, WrittenScene& written) {
+  a.number("density", written.scene.method.reference_density,
            {.about = "reference density rho_0", .unit = "kg/m^3", .range = from(1e-6, 1e6)});
-  a.number("sound_speed", document.sound_speed,
+  a.number("sound_speed", written.sound_speed,
            {.about = "numerical speed of sound c, about ten times the largest flow speed",
             .unit = "m/s",
             .range = kSoundSpeed,
@@ -412,21 +412,21 @@ void describe_material(Archive& a, Document& document) {
 }
 
 template <class Archive>
-void describe_resolution(Archive& a, Document& document) {
-  a.number("spacing", document.scene.method.spacing,
+void describe_resolution(Archive& a, WrittenScene& written) {
+  a.number("spacing", written.scene.method.spacing,
            {.about = "particle distance dx at the start",
             .unit = "m",
             .range = from(1e-9, 1e5),
             .need = Need::required});
-  a.number("smoothing_ratio", document.smoothing_ratio,
+  a.number("smoothing_ratio", written.smoothing_ratio,
            {.about = "smoothing length over particle distance, h/dx",
             .range = from(0.8, 2.5),
             .otherwise = "1 for truncated_gaussian, 1.5 for wendland_c2: a support of 3 dx"});
 }
 
 template <class Archive>
-void describe(Archive& a, Document& document) {
-  Scene& scene = document.scene;
+void describe(Archive& a, WrittenScene& written) {
+  Scene& scene = written.scene;
   a.text("name", scene.name,
          {.about = "name of the scene", .min = 1, .max = 64, .need = Need::required});
   a.text("description", scene.description,
@@ -443,18 +443,18 @@ void describe(Archive& a, Document& document) {
           .need = Need::required});
   a.list("obstacles", scene.obstacles,
          {.about = "solid bodies at rest; they displace fluid", .max = kMaxShapes});
-  a.vector("gravity", document.gravity,
+  a.vector("gravity", written.gravity,
            {.about = "body acceleration f",
             .unit = "m/s^2",
             .range = from(-1e9, 1e9),
             .otherwise = "no gravity"});
-  a.section("domain", document.domain,
+  a.section("domain", written.domain,
             {.about = "a particle that leaves this box is retired",
              .otherwise = "the tank with its walls and room above, or the fluid with ample room"});
   a.section("material", {.about = "the fluid"},
-            [&](auto& child) { describe_material(child, document); });
+            [&](auto& child) { describe_material(child, written); });
   a.section("resolution", {.about = "how fine", .need = Need::required},
-            [&](auto& child) { describe_resolution(child, document); });
+            [&](auto& child) { describe_resolution(child, written); });
   a.section("perturbation", scene.perturbation,
             {.about = "random displacement of the particles at the start, for ensembles",
              .otherwise = "a regular lattice"});

@@ -146,7 +146,7 @@ void add_former_words(SchemaWriter::json& schema, std::span<const FormerWord> wo
 }
 
 std::string scene_schema_text() {
-  Document fresh;
+  WrittenScene fresh;
   SchemaWriter writer;
   describe(writer, fresh);
   SchemaWriter::json schema = {

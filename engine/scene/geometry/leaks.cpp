@@ -19,7 +19,7 @@ constexpr double kDeepEnough = 1.01;
 constexpr int kWays = 8;  // across a solid
 constexpr double kStepsPerSpacing = 8;
 
-bool is_deep(const LiftedWall& gate, const Vec& place, double time, double depth) {
+bool is_deep(const GateMotion& gate, const Vec& place, double time, double depth) {
   Box standing = gate.place;
   standing.min.y() += gate.speed * time;
   return grown(standing, -depth).contains(place);
@@ -98,13 +98,13 @@ Method method_with_solids(const Scene& scene) {
   Method method = scene.method;
   const double depth = method.spacing;
   if (scene.tank) add_tank(*scene.tank, depth, method);
-  if (scene.obstacles.empty() && !method.lifted_wall) return method;
+  if (scene.obstacles.empty() && !method.gate) return method;
   Scene solid;
   solid.tank = scene.tank;
   solid.obstacles = scene.obstacles;
   solid.method.spacing = method.spacing;
-  method.in_solid = [obstacles = Obstacles(solid), gate = method.lifted_wall, depth](
-                        const Vec& place, double time) {
+  method.in_solid = [obstacles = Obstacles(solid), gate = method.gate, depth](const Vec& place,
+                                                                              double time) {
     return (gate && is_deep(*gate, place, time, depth)) || obstacles.hold_deep(place);
   };
   return method;

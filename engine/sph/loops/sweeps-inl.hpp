@@ -150,16 +150,16 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x, V trace
   }
 }
 
-/// Positions of the particles i as seen from the tile of a cluster j.
+/// Positions of the particles i as seen from the origin_cell of a cluster j.
 template <typename T>
-struct TileShift {
+struct OriginShift {
   T x[9];
   T y[9];
-  explicit TileShift(T tile_size) {
+  explicit OriginShift(T origin_cell_size) {
     for (int code = 0; code < 9; ++code) {
       const int row = code / 3;
-      x[code] = -static_cast<T>(code % 3 - 1) * tile_size;
-      y[code] = -static_cast<T>(row - 1) * tile_size;
+      x[code] = -static_cast<T>(code % 3 - 1) * origin_cell_size;
+      y[code] = -static_cast<T>(row - 1) * origin_cell_size;
     }
   }
 };
@@ -175,11 +175,11 @@ HWY_INLINE T* place_of(T* sums, std::size_t stride, const PairList::Chunk& list,
 /// c-th of the list's chunk.
 template <typename T, class V, class Body>
 HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
-                              const TileShift<T>& shift, V x_i, V y_i, const Body& body) {
+                              const OriginShift<T>& shift, V x_i, V y_i, const Body& body) {
   using B = Blocks<T>;
   const typename B::D d;
   const std::uint32_t* HWY_RESTRICT entries = list.entries.data();
-  std::uint32_t seen_from = kSameTile;
+  std::uint32_t seen_from = kSameOriginCell;
   V x_seen = x_i;
   V y_seen = y_i;
   for (std::size_t n = list.begin[c]; n != list.begin[c + 1]; ++n) {
@@ -217,7 +217,7 @@ struct Terms {
   static constexpr Viscosity friction = acceleration && kDrag == Drag::wall_artificial_viscosity
                                             ? Viscosity::linear
                                             : Viscosity::none;
-  static constexpr bool physical = acceleration && kDrag == Drag::laminar_viscosity;
+  static constexpr bool laminar = acceleration && kDrag == Drag::laminar_viscosity;
   static constexpr bool wall_shear = acceleration && kDrag == Drag::wall_shear;
   static constexpr bool shifting = kShifting;
   static constexpr SumBlocks blocks = shifting        ? kDensityAndShiftingSums
@@ -229,16 +229,16 @@ struct Terms {
 /// What the rate sums need of the particles i of a vector, and the sums.
 template <class V>
 struct RateOfI {
-  V u, v, speed, density, half, volume, diffused, stress;
+  V u, v, speed, density, half, volume, diffused, pressure_term;
   V density_sum, x_sum, y_sum, trace_sum;
 };
 
 /// Adds the pairs of one list to the particles i and, where `sums` is given, to the particles j.
 template <class Shape, class Terms, Viscosity kViscosity, Share kShare, typename T, class V>
 HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
-                          const TileShift<T>& shift, V x_i, V y_i,
+                          const OriginShift<T>& shift, V x_i, V y_i,
                           const ArtificialViscosityTerm<T>& viscosity,
-                          const LaminarViscosityTerm<T>& physical,
+                          const LaminarViscosityTerm<T>& laminar,
                           const WallShearTerm<T>& wall_shear,
                           const DensityDiffusionTerm<T>& diffusion, RateOfI<V>& i, T* sums) {
   const typename Blocks<T>::D d;
@@ -274,7 +274,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       }
     }
     if constexpr (Terms::acceleration) {
-      V summand = PressureGradient::summand(i.stress, load_j(other.stress + j));
+      V summand = PressureGradient::summand(i.pressure_term, load_j(other.pressure_term + j));
       if constexpr (kViscosity != Viscosity::none) {
         constexpr bool kImpacts = kViscosity == Viscosity::with_impacts;
         summand =
@@ -283,9 +283,9 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       summand = summand * g;
       x_j = summand * dx;
       y_j = summand * dy;
-      if constexpr (Terms::physical) {
-        x_j = hn::NegMulAdd(g, physical.summand(d, i.u, load_j(other.u + j)), x_j);
-        y_j = hn::NegMulAdd(g, physical.summand(d, i.v, load_j(other.v + j)), y_j);
+      if constexpr (Terms::laminar) {
+        x_j = hn::NegMulAdd(g, laminar.summand(d, i.u, load_j(other.u + j)), x_j);
+        y_j = hn::NegMulAdd(g, laminar.summand(d, i.v, load_j(other.v + j)), y_j);
       }
       if constexpr (Terms::wall_shear && kShare == Share::i_alone) {
         x_j = hn::NegMulAdd(g, wall_shear.summand(d, i.speed, i.u), x_j);
@@ -317,13 +317,13 @@ void sum_rates(const SweepTask<T>& task) {
   using V = typename B::V;
   const typename B::D d;
   const TermConstants<T>& k = *task.constants;
-  const TileShift<T> shift(k.tile_size);
+  const OriginShift<T> shift(k.origin_cell_size);
   const DensityDiffusionTerm<T> diffusion{k.two_delta};
   const DensityDiffusionTerm<T> wall_diffusion{k.two_delta_wall};
   const ArtificialViscosityTerm<T> viscosity{k.viscosity_alpha, k.viscosity_epsilon,
                                              k.viscosity_beta};
   const ArtificialViscosityTerm<T> friction{k.friction_alpha, k.friction_epsilon, T{0}};
-  const LaminarViscosityTerm<T> physical{k.two_nu};
+  const LaminarViscosityTerm<T> laminar{k.two_nu};
   const WallShearTerm<T> wall_shear{k.wall_two_nu_by_speed};
   std::fill_n(task.sums, Terms::blocks.stride * task.to_fluid->places(), T{});
 
@@ -341,16 +341,16 @@ void sum_rates(const SweepTask<T>& task) {
       i.half = hn::MulAdd(hn::Set(d, T{0.5}), excess, hn::Set(d, T{1}));
       if constexpr (Terms::density) i.volume = load_i(self.volume + slot);
       if constexpr (Terms::diffusion) i.diffused = load_i(self.diffused + slot);
-      if constexpr (Terms::acceleration) i.stress = load_i(self.stress + slot);
+      if constexpr (Terms::acceleration) i.pressure_term = load_i(self.pressure_term + slot);
       if constexpr (Terms::wall_shear) i.speed = hn::Sqrt(hn::MulAdd(i.u, i.u, i.v * i.v));
       i.density_sum = i.x_sum = i.y_sum = i.trace_sum = hn::Zero(d);
 
       add_rates<Shape, Terms, Terms::viscosity, Share::both>(*task.to_fluid, c, task.fluid, shift,
-                                                             x_i, y_i, viscosity, physical,
+                                                             x_i, y_i, viscosity, laminar,
                                                              wall_shear, diffusion, i, task.sums);
       if (task.to_wall != nullptr) {
         add_rates<Shape, Terms, Terms::friction, Share::i_alone>(
-            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, physical, wall_shear,
+            *task.to_wall, c, task.wall, shift, x_i, y_i, friction, laminar, wall_shear,
             wall_diffusion, i, task.sums);
       }
       T* const sums = task.sums + Terms::blocks.stride * c + part;
@@ -370,7 +370,7 @@ void sum_wall_pressure(const SweepTask<T>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
-  const TileShift<T> shift(task.constants->tile_size);
+  const OriginShift<T> shift(task.constants->origin_cell_size);
   const WallPressureTerm<T> term{task.constants->gravity_x, task.constants->gravity_y};
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
@@ -402,7 +402,7 @@ void sum_reinitialisation(const SweepTask<T>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
-  const TileShift<T> shift(task.constants->tile_size);
+  const OriginShift<T> shift(task.constants->origin_cell_size);
   constexpr SumBlocks blocks = kReinitialisationSums;
   std::fill_n(task.sums, blocks.stride * task.to_fluid->places(), T{});
   for (std::size_t c = 0; c < task.clusters; ++c) {
@@ -466,7 +466,7 @@ inline std::size_t search_boxes(const SearchTask& task) {
       const auto level =
           hn::And(hn::LoadU(d, boxes.y_max + j) >= low, hn::LoadU(d, boxes.y_min + j) <= high);
       const auto near = hn::And(clusters_within(d, boxes, j, row.end, left, right), level);
-      found += list_lanes(d, near, j + (kSameTile << PairList::kShiftBit), task.out + found);
+      found += list_slots(d, near, j + (kSameOriginCell << PairList::kShiftBit), task.out + found);
       if (j + lanes < row.end && boxes.x_min_after[j + lanes] > task.right) break;
     }
   }
@@ -476,21 +476,20 @@ inline std::size_t search_boxes(const SearchTask& task) {
 /// Where the particles i or j of a vector are in the middle of the lists' lifetime, their
 /// velocities and what they may be off.
 template <class V>
-struct TrackOf {
-  V x, y, u, v, leeway;
+struct PathOf {
+  V x, y, u, v, skin;
 };
 
 template <typename T, class V, class Load>
-HWY_INLINE TrackOf<V> load_track(const TracksView<T>& tracks, std::size_t slot, const Load& load) {
+HWY_INLINE PathOf<V> load_path(const ListPathsView<T>& paths, std::size_t slot, const Load& load) {
   const typename Blocks<T>::D d;
-  constexpr Leeway<T> leeway = kLeeway<T>;
-  const V half_life = hn::Set(d, T{0.5} * leeway.lifetime);
-  const V u = load(tracks.u + slot);
-  const V v = load(tracks.v + slot);
-  return {
-      hn::MulAdd(half_life, u, load(tracks.x + slot)),
-      hn::MulAdd(half_life, v, load(tracks.y + slot)), u, v,
-      hn::MulAdd(hn::Set(d, leeway.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, leeway.least))};
+  constexpr Skin<T> skin = kSkin<T>;
+  const V half_life = hn::Set(d, T{0.5} * skin.lifetime);
+  const V u = load(paths.u + slot);
+  const V v = load(paths.v + slot);
+  return {hn::MulAdd(half_life, u, load(paths.x + slot)),
+          hn::MulAdd(half_life, v, load(paths.y + slot)), u, v,
+          hn::MulAdd(hn::Set(d, skin.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, skin.least))};
 }
 
 template <typename T>
@@ -498,15 +497,15 @@ std::size_t prune_list(const PruneTask<T>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
-  const TileShift<T> shift(task.tile_size);
+  const OriginShift<T> shift(task.origin_cell_size);
   constexpr std::size_t parts = kCluster / B::i_count;
   const auto of_i = [](const T* from) HWY_ATTR { return load_i(from); };
   const auto of_j = [](const T* from) HWY_ATTR { return load_j(from); };
-  const V half_life = hn::Set(d, T{0.5} * kLeeway<T>.lifetime);
-  TrackOf<V> i[parts];
+  const V half_life = hn::Set(d, T{0.5} * kSkin<T>.lifetime);
+  PathOf<V> i[parts];
   for (std::size_t part = 0; part < parts; ++part) {
-    i[part] = load_track<T, V>(task.self, kCluster * task.cluster + part * B::i_count, of_i);
-    i[part].leeway = i[part].leeway + hn::Set(d, task.cut_off);
+    i[part] = load_path<T, V>(task.self, kCluster * task.cluster + part * B::i_count, of_i);
+    i[part].skin = i[part].skin + hn::Set(d, task.cut_off);
   }
   std::size_t kept = 0;
   for (std::size_t n = 0; n < task.count; ++n) {
@@ -515,12 +514,12 @@ std::size_t prune_list(const PruneTask<T>& task) {
     const std::uint32_t code = entry >> PairList::kShiftBit;
     bool near = false;
     for (std::size_t k = 0; k < B::j_vectors; ++k) {
-      const auto j = load_track<T, V>(task.other, slot + k * B::j_lanes, of_j);
+      const auto j = load_path<T, V>(task.other, slot + k * B::j_lanes, of_j);
       for (std::size_t part = 0; part < parts; ++part) {
         const V dx = i[part].x + hn::Set(d, shift.x[code]) - j.x;
         const V dy = i[part].y + hn::Set(d, shift.y[code]) - j.y;
         const V passing = hn::Abs(i[part].u - j.u) + hn::Abs(i[part].v - j.v);
-        const V limit = hn::MulAdd(half_life, passing, i[part].leeway + j.leeway);
+        const V limit = hn::MulAdd(half_life, passing, i[part].skin + j.skin);
         near |= !hn::AllFalse(d, hn::MulAdd(dx, dx, dy * dy) < limit * limit);
       }
     }

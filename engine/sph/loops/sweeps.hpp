@@ -22,7 +22,7 @@ struct TermConstants {
   T two_nu{};
   T wall_two_nu_by_speed{};
   T gravity_x{}, gravity_y{};
-  T tile_size{};  ///< in h
+  T origin_cell_size{};  ///< in h
 };
 
 /// One chunk of clusters i against the clusters j of its lists.
@@ -42,8 +42,8 @@ struct SweepTask {
 
 /// A cluster i, by its box, whose possible neighbours among the clusters j are wanted.
 struct SearchTask {
-  /// Clusters j of a strip; those before `next` are near neither i nor a later cluster of its
-  /// strip.
+  /// Clusters j of a row; those before `next` are near neither i nor a later cluster of its
+  /// row.
   struct Row {
     std::uint32_t next = 0;
     std::uint32_t end = 0;
@@ -52,16 +52,16 @@ struct SearchTask {
   float left{}, right{}, low{}, high{};  ///< of cluster i, with the cut-off, h
   float left_after{};                    ///< least `left` from cluster i on
   std::uint32_t first = 0;               ///< clusters j before it are left out
-  std::span<Row> rows;                   ///< of the strips near i; `next` is moved on
+  std::span<Row> rows;                   ///< of the rows near i; `next` is moved on
   std::uint32_t* out = nullptr;          ///< entries; room for all clusters of the rows and kTail
 };
 
 /// A cluster i whose list of possible neighbours among the clusters j is wanted.
 template <typename T>
 struct PruneTask {
-  TracksView<T> self, other;
+  ListPathsView<T> self, other;
   T cut_off{};  ///< support in h
-  T tile_size{};
+  T origin_cell_size{};
   std::size_t cluster = 0;
   const std::uint32_t* candidates = nullptr;  ///< entries to test, in order
   std::size_t count = 0;
@@ -79,8 +79,8 @@ struct Sweeps {
   Sweep acceleration = nullptr;              ///< eqs. 5, 8, viscous stress
   Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
   Sweep reinitialise = nullptr;              ///< eq. 10
-  /// The clusters whose boxes meet that of cluster i, as entries of the same tile; returns how
-  /// many.
+  /// The clusters whose boxes meet that of cluster i, as entries of the same origin_cell; returns
+  /// how many.
   std::size_t (*search)(const SearchTask&) = nullptr;
   /// Keeps the candidates of which a particle may come within the cut-off of one of cluster i while
   /// both stay within the leeway of their tracks.

@@ -144,10 +144,10 @@ void kick(const ParticleSpan& p, const Rates<T>& r, double dt) {
 }
 
 template <typename T>
-void gather(std::span<const Arrival> arrivals, const T* const* sums_of_chunks, std::size_t stride,
-            T* own) {
+void gather(std::span<const Contribution> contributions, const T* const* sums_of_chunks,
+            std::size_t stride, T* own) {
   const hn::CappedTag<T, kCluster> d;
-  for (const Arrival& a : arrivals) {
+  for (const Contribution& a : contributions) {
     const T* HWY_RESTRICT from = sums_of_chunks[a.chunk] + stride * a.place;
     T* HWY_RESTRICT to = own + stride * a.cluster;
     for (std::size_t k = 0; k < stride; k += hn::Lanes(d)) {
@@ -174,11 +174,11 @@ HWY_INLINE void write_relative(D d, std::size_t begin, std::size_t end, T* HWY_R
 template <typename T>
 void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
   const auto write = [&](auto d, std::size_t begin, std::size_t end) HWY_ATTR {
-    const Vec origin = k.grid->tile_center(k.tile[begin / kCluster]);
+    const Vec origin = k.grid->origin_cell_center(k.origin_cell[begin / kCluster]);
     write_relative(d, begin, end, out.x.data(), p.x, origin.x(), k.inverse_length);
     write_relative(d, begin, end, out.y.data(), p.y, origin.y(), k.inverse_length);
   };
-  if (k.grid->has_one_tile()) {
+  if (k.grid->has_one_origin_cell()) {
     write(hn::ScalableTag<double>(), p.begin, p.end);
   } else {
     for (std::size_t s = p.begin; s < p.end; s += kCluster) write(State(), s, s + kCluster);
@@ -205,37 +205,36 @@ template <typename T>
 void write_densities(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
   T* HWY_RESTRICT excess = out.excess.data();
   T* HWY_RESTRICT volume = out.volume.data();
-  T* HWY_RESTRICT stress = out.stress.data();
+  T* HWY_RESTRICT pressure_term = out.pressure_term.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {
     const T s = static_cast<T>(p.density_excess[i] * k.inverse_density);
     const T v = T{1} / (T{1} + s);
     excess[i] = s;
     volume[i] = v;
-    stress[i] = s * v * v;
+    pressure_term[i] = s * v * v;
   }
 }
 
 template <typename T>
-void compare_with_tracks(const ParticleSpan& p, const PairArrays<T>& now,
-                         const TracksView<T>& tracks, const Leeway<T>& leeway, T elapsed,
-                         Motion& out) {
+void compare_with_paths(const ParticleSpan& p, const PairArrays<T>& now,
+                        const ListPathsView<T>& paths, const Skin<T>& skin, T elapsed,
+                        Motion& out) {
   using D = hn::ScalableTag<T>;
   const D d;
   const auto t = hn::Set(d, elapsed);
-  auto strayed = hn::FirstN(d, 0);
+  auto expired = hn::FirstN(d, 0);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const auto x = hn::LoadU(d, tracks.x + s);
-    const auto u = hn::LoadU(d, tracks.u + s);
-    const auto v = hn::LoadU(d, tracks.v + s);
+    const auto x = hn::LoadU(d, paths.x + s);
+    const auto u = hn::LoadU(d, paths.u + s);
+    const auto v = hn::LoadU(d, paths.v + s);
     const auto dx = hn::NegMulAdd(u, t, hn::LoadU(d, now.x.data() + s) - x);
-    const auto dy =
-        hn::NegMulAdd(v, t, hn::LoadU(d, now.y.data() + s) - hn::LoadU(d, tracks.y + s));
+    const auto dy = hn::NegMulAdd(v, t, hn::LoadU(d, now.y.data() + s) - hn::LoadU(d, paths.y + s));
     const auto limit =
-        hn::MulAdd(hn::Set(d, leeway.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, leeway.least));
+        hn::MulAdd(hn::Set(d, skin.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, skin.least));
     const auto used = hn::Abs(x) < hn::Set(d, static_cast<T>(kNowhere));
-    strayed = hn::Or(strayed, hn::And(used, hn::MulAdd(dx, dx, dy * dy) > limit * limit));
+    expired = hn::Or(expired, hn::And(used, hn::MulAdd(dx, dx, dy * dy) > limit * limit));
   }
-  out.strayed |= !hn::AllFalse(d, strayed);
+  out.expired |= !hn::AllFalse(d, expired);
 }
 
 template <typename T>
@@ -264,7 +263,7 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   V high = hn::Set(d, -1e300);
   V front = hn::Set(d, -1e300);
   auto leaving = hn::FirstN(d, 0);
-  // As cause_to_retire(). All comparisons are false for a NaN.
+  // As cause_to_remove(). All comparisons are false for a NaN.
   const V sound_sq = hn::Set(d, method.sound_speed * method.sound_speed);
   const V most_excess = hn::Set(d, method.most_density_excess());
   const Box& domain = method.domain;
@@ -395,7 +394,7 @@ HWY_INLINE auto clusters_within(D d, const BoxesView& boxes, std::uint32_t j, st
 /// Writes first, first + 1, ... for the lanes of the mask, and a vector's worth beyond; returns how
 /// many they are.
 template <class D, class M>
-HWY_INLINE std::size_t list_lanes(D, M mask, std::uint32_t first, std::uint32_t* HWY_RESTRICT out) {
+HWY_INLINE std::size_t list_slots(D, M mask, std::uint32_t first, std::uint32_t* HWY_RESTRICT out) {
   const hn::RebindToUnsigned<D> d_number;
   const auto chosen = hn::RebindMask(d_number, mask);
   const auto numbers = hn::Iota(d_number, 0) + hn::Set(d_number, first);
@@ -404,7 +403,7 @@ HWY_INLINE std::size_t list_lanes(D, M mask, std::uint32_t first, std::uint32_t*
 }
 
 /// The first cluster of a row that reaches `left`, or its end. Clusters lie about evenly along a
-/// strip, so that it is mostly in the vector that is tried first.
+/// row, so that it is mostly in the vector that is tried first.
 inline std::uint32_t first_near(const BoxesView& boxes, const Surroundings::Row& row) {
   const hn::CappedTag<float, kTail> d;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
@@ -441,7 +440,7 @@ HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body
     const auto right = hn::Set(d, row.right);
     for (std::uint32_t j = first_near(boxes, row); j < row.end; j += lanes) {
       if (boxes.x_min_after[j] > row.right) break;
-      count += list_lanes(d, clusters_within(d, boxes, j, row.end, left, right), j, listed + count);
+      count += list_slots(d, clusters_within(d, boxes, j, row.end, left, right), j, listed + count);
       if (count >= kListed) {
         body(std::span<const std::uint32_t>(listed, count));
         count = 0;
@@ -491,7 +490,7 @@ void fill_updates(Updates<T>& out) {
   out.write_places = &write_places<T>;
   out.write_velocities = &write_velocities<T>;
   out.write_densities = &write_densities<T>;
-  out.compare = &compare_with_tracks<T>;
+  out.compare = &compare_with_paths<T>;
   out.gather = &gather<T>;
   out.reinitialise = &reinitialise_density<T>;
   out.measure = &measure;

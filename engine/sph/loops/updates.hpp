@@ -9,8 +9,8 @@
 #include "engine/sph/method/method.hpp"
 #include "engine/sph/method/particles.hpp"
 #include "engine/sph/pairs/layout.hpp"
+#include "engine/sph/pairs/list_paths.hpp"
 #include "engine/sph/pairs/pair_arrays.hpp"
-#include "engine/sph/pairs/tracks.hpp"
 
 namespace sluice {
 
@@ -59,8 +59,8 @@ struct Motion {
   double min_density_excess = 1e300;
   double max_density_excess = -1e300;
   double max_x = -1e300;  ///< m
-  bool strayed = false;   ///< a particle is off its track by more than the leeway
-  bool leaving = false;   ///< a particle is to be retired
+  bool expired = false;   ///< a particle is off its path by more than the leeway
+  bool leaving = false;   ///< a particle is to be removed
 
   void merge(const Motion& other) {
     speed_sq = std::max(speed_sq, other.speed_sq);
@@ -68,7 +68,7 @@ struct Motion {
     min_density_excess = std::min(min_density_excess, other.min_density_excess);
     max_density_excess = std::max(max_density_excess, other.max_density_excess);
     max_x = std::max(max_x, other.max_x);
-    strayed |= other.strayed;
+    expired |= other.expired;
     leaving |= other.leaving;
   }
 };
@@ -83,12 +83,13 @@ struct PairScales {
   double hydrostatic_middle = 0.0;  ///< hydrostatic . x in the middle of the domain: taken off psi,
                                     ///< so that its size does not depend on where the scene lies
   const Grid* grid = nullptr;
-  const Grid::Tile* tile = nullptr;  ///< per cluster; its centre is the origin of the places
+  const Grid::OriginCell* origin_cell =
+      nullptr;  ///< per cluster; its centre is the origin of the places
 };
 
 /// A point to sum around.
 struct Surroundings {
-  /// A strip, by its clusters, of which there are some, and the part of it that is near the point,
+  /// A row, by its clusters, of which there are some, and the part of it that is near the point,
   /// in smoothing lengths of the method.
   struct Row {
     std::uint32_t begin = 0;
@@ -131,14 +132,14 @@ struct Updates {
   void (*write_velocities)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
   void (*write_densities)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
   /// Whether a particle, `elapsed` h/c after the tracks began, is off its own.
-  void (*compare)(const ParticleSpan&, const PairArrays<T>&, const TracksView<T>&, const Leeway<T>&,
-                  T elapsed, Motion&) = nullptr;
+  void (*compare)(const ParticleSpan&, const PairArrays<T>&, const ListPathsView<T>&,
+                  const Skin<T>&, T elapsed, Motion&) = nullptr;
   /// Adds to a chunk's own sums those that others have for it, in this order.
-  void (*gather)(std::span<const Arrival>, const T* const* sums_of_chunks, std::size_t stride,
+  void (*gather)(std::span<const Contribution>, const T* const* sums_of_chunks, std::size_t stride,
                  T* own) = nullptr;
   /// eq. 10 into both time levels, by the same increment.
   void (*reinitialise)(const ParticleSpan&, const Rates<T>&, double reference_density) = nullptr;
-  /// Speeds, densities, the front and who is to be retired.
+  /// Speeds, densities, the front and who is to be removed.
   void (*measure)(const ParticleSpan&, const Method&, Motion&) = nullptr;
   /// Largest acceleration of the state.
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;

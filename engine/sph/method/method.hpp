@@ -76,7 +76,7 @@ struct ParticleShifting {
 
 /// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,
 /// and go row by row as the lower edge passes them. Nothing of it is state: it follows from t.
-struct LiftedWall {
+struct GateMotion {
   Box place;           ///< m
   double speed = 0.0;  ///< upwards, m/s
 
@@ -117,11 +117,11 @@ struct Method {
   std::optional<ParticleShifting> shifting;  ///< with kick_drift_kick only
   std::optional<Reinitialisation> reinitialisation;
   WallPressure wall_pressure = WallPressure::extrapolated;
-  std::optional<LiftedWall> lifted_wall;
-  Box domain;                      ///< a particle that leaves it is retired
+  std::optional<GateMotion> gate;
+  Box domain;                      ///< a particle that leaves it is removed
   std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
                                    ///< no open tank
-  /// m; outside of these x a particle is over the wall from over_from() on and retired at once, so
+  /// m; outside of these x a particle is over the wall from over_from() on and removed at once, so
   /// that what falls down behind a wall is not taken for a leak.
   double rim_left = -std::numeric_limits<double>::infinity();
   double rim_right = std::numeric_limits<double>::infinity();

@@ -80,7 +80,7 @@ inline constexpr std::array kFields{
 
 /// Why a particle left the sums: where it went, or, from not_finite on, because it became what the
 /// scheme cannot hold, and was excluded.
-enum class RetireCause {
+enum class RemovalCause {
   overtopped,  ///< over the rim of an open tank
   leaked,      ///< into or through a solid, or over the edge of the domain
   not_finite,  ///< a place, velocity or density that is no number
@@ -88,17 +88,17 @@ enum class RetireCause {
   too_dense,   ///< rho/rho_0 above 1 + Method::kDensityLeeway
   too_thin,    ///< rho/rho_0 below 1 - Method::kDensityLeeway
 };
-inline constexpr std::size_t kRetireCauses = 6;
-[[nodiscard]] constexpr bool is_exclusion(RetireCause cause) {
-  return cause >= RetireCause::not_finite;
+inline constexpr std::size_t kRemovalCauses = 6;
+[[nodiscard]] constexpr bool is_exclusion(RemovalCause cause) {
+  return cause >= RemovalCause::not_finite;
 }
-[[nodiscard]] std::string_view to_string(RetireCause cause);
+[[nodiscard]] std::string_view to_string(RemovalCause cause);
 
 /// A particle that left the sums, as it was then. What was not finite is 0, a place that of the
 /// last sort. Velocities and densities are 0 in what builds before the exclusion wrote.
-struct Retired {
+struct RemovedParticle {
   double id = 0;
-  RetireCause cause = RetireCause::leaked;
+  RemovalCause cause = RemovalCause::leaked;
   std::uint64_t step = 0;
   double time = 0.0;            ///< s
   double x = 0.0;               ///< m
@@ -114,7 +114,7 @@ struct SolverState {
   std::uint64_t step = 0;
   double time = 0.0;       ///< model time t^n, s
   double time_step = 0.0;  ///< length of the step that led here, s; 0 before the first
-  std::vector<Retired> retired;
+  std::vector<RemovedParticle> removed;
 };
 
 /// Of the fluid, J per metre of depth: kinetic m v^2/2, potential -m f . x, and internal

@@ -9,8 +9,8 @@
 namespace sluice {
 
 /// The sums over a mutual list, chunk by chunk, and who brings what to whom. Every chunk has sums
-/// of its own, for its clusters and for its guests, so that no two chunks ever add to the same
-/// place; what is for a guest waits there until the guest's chunk takes it, in the order of chunks.
+/// of its own, for its clusters and for its halos, so that no two chunks ever add to the same
+/// place; what is for a halo waits there until the halo's chunk takes it, in the order of chunks.
 template <typename T>
 class ChunkSums {
  public:
@@ -19,8 +19,8 @@ class ChunkSums {
     const std::size_t chunks = list.chunks.size();
     sums_.resize(chunks);
     of_chunks_.resize(chunks);
-    arrivals_.resize(chunks);
-    for (auto& arrivals : arrivals_) arrivals.clear();
+    contributions_.resize(chunks);
+    for (auto& contributions : contributions_) contributions.clear();
     sources_.resize(chunks);
     for (auto& sources : sources_) sources.clear();
     for (std::size_t k = 0; k < chunks; ++k) {
@@ -28,11 +28,11 @@ class ChunkSums {
       sums_[k].resize(stride * chunk.places());
       of_chunks_[k] = sums_[k].data();
       std::size_t place = chunk.begin.size() - 1;
-      for (const std::uint32_t guest : chunk.guests) {
-        const std::size_t target = guest / clusters_per_chunk;
-        arrivals_[target].push_back({static_cast<std::uint32_t>(k),
-                                     static_cast<std::uint32_t>(place++),
-                                     static_cast<std::uint32_t>(guest % clusters_per_chunk)});
+      for (const std::uint32_t halo : chunk.halos) {
+        const std::size_t target = halo / clusters_per_chunk;
+        contributions_[target].push_back({static_cast<std::uint32_t>(k),
+                                          static_cast<std::uint32_t>(place++),
+                                          static_cast<std::uint32_t>(halo % clusters_per_chunk)});
         add_source(target, k);
       }
     }
@@ -43,8 +43,8 @@ class ChunkSums {
   [[nodiscard]] T* of(std::size_t chunk) const { return of_chunks_[chunk]; }
   [[nodiscard]] T* const* of_chunks() const { return of_chunks_.data(); }
   /// What others have for the clusters of `chunk`, in the order of chunks.
-  [[nodiscard]] std::span<const Arrival> arrivals(std::size_t chunk) const {
-    return arrivals_[chunk];
+  [[nodiscard]] std::span<const Contribution> contributions(std::size_t chunk) const {
+    return contributions_[chunk];
   }
   /// The chunks, all of them earlier, whose sweeps read particles of `chunk` or have sums for them.
   [[nodiscard]] std::span<const std::uint32_t> sources(std::size_t chunk) const {
@@ -53,7 +53,8 @@ class ChunkSums {
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
     for (const auto& sums : sums_) sum += sums.bytes();
-    for (const auto& arrivals : arrivals_) sum += arrivals.capacity() * sizeof(Arrival);
+    for (const auto& contributions : contributions_)
+      sum += contributions.capacity() * sizeof(Contribution);
     for (const auto& sources : sources_) sum += sources.capacity() * sizeof(std::uint32_t);
     return sum;
   }
@@ -67,7 +68,7 @@ class ChunkSums {
 
   std::vector<AlignedArray<T>> sums_;
   std::vector<T*> of_chunks_;
-  std::vector<std::vector<Arrival>> arrivals_;
+  std::vector<std::vector<Contribution>> contributions_;
   std::vector<std::vector<std::uint32_t>> sources_;
 };
 

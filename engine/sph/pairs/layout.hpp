@@ -13,60 +13,63 @@
 
 namespace sluice {
 
-/// The fixed geometry of the order of particles in memory: strips two spacings high, and along a
-/// strip bins two spacings wide (wider in a vast and almost empty domain). It depends on the scene
+/// The fixed geometry of the order of particles in memory: rows two spacings high, and along a
+/// row cells two spacings wide (wider in a vast and almost empty domain). It depends on the scene
 /// alone, never on where particles went.
 class Grid {
  public:
   /// `particles` bounds the memory that the grid may use. Lengths in m.
   Grid(const Box& domain, double spacing, double smoothing_length, std::size_t particles);
 
-  [[nodiscard]] std::size_t strips() const { return strips_; }
-  [[nodiscard]] std::size_t bins() const { return bins_; }
-  /// Positions outside the domain count to the nearest strip and bin.
-  [[nodiscard]] std::size_t strip(double y) const { return cell(y - origin_.y(), strip_, strips_); }
-  [[nodiscard]] std::size_t bin(double x) const { return cell(x - origin_.x(), bin_, bins_); }
-  [[nodiscard]] double strip_height() const { return strip_; }
-  /// Lower edge of a strip, m.
-  [[nodiscard]] double strip_bottom(std::size_t strip) const {
-    return origin_.y() + static_cast<double>(strip) * strip_;
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] std::size_t cells() const { return cells_; }
+  /// Positions outside the domain count to the nearest row and cell.
+  [[nodiscard]] std::size_t row(double y) const { return index_of(y - origin_.y(), row_, rows_); }
+  [[nodiscard]] std::size_t cell(double x) const {
+    return index_of(x - origin_.x(), cell_, cells_);
   }
-  /// A cluster spans at most this much of a strip, m.
+  [[nodiscard]] double row_height() const { return row_; }
+  /// Lower edge of a row, m.
+  [[nodiscard]] double row_bottom(std::size_t row) const {
+    return origin_.y() + static_cast<double>(row) * row_;
+  }
+  /// A cluster spans at most this much of a row, m.
   [[nodiscard]] double max_cluster_length() const { return max_cluster_length_; }
 
-  /// Tiles: squares whose centres are the origins of single-precision positions. One tile where
-  /// that resolves 3e-5 h.
-  struct Tile {
+  /// Tiles: squares whose centres are the origins of single-precision positions. One origin_cell
+  /// where that resolves 3e-5 h.
+  struct OriginCell {
     int column = 0;
     int row = 0;
-    friend bool operator==(const Tile&, const Tile&) = default;
+    friend bool operator==(const OriginCell&, const OriginCell&) = default;
   };
-  [[nodiscard]] Tile tile(const Vec& position) const;
-  [[nodiscard]] Vec tile_center(Tile tile) const {
-    return tile_origin_ + tile_size_ * Vec(tile.column + 0.5, tile.row + 0.5);
+  [[nodiscard]] OriginCell origin_cell(const Vec& position) const;
+  [[nodiscard]] Vec origin_cell_center(OriginCell origin_cell) const {
+    return origin_cell_corner_ +
+           origin_cell_size_ * Vec(origin_cell.column + 0.5, origin_cell.row + 0.5);
   }
-  [[nodiscard]] double tile_size() const { return tile_size_; }
-  /// Whether there is no other tile than one.
-  [[nodiscard]] bool has_one_tile() const { return one_tile_; }
+  [[nodiscard]] double origin_cell_size() const { return origin_cell_size_; }
+  /// Whether there is no other origin_cell than one.
+  [[nodiscard]] bool has_one_origin_cell() const { return one_origin_cell_; }
 
  private:
-  static std::size_t cell(double distance, double size, std::size_t count);
+  static std::size_t index_of(double distance, double size, std::size_t count);
 
   Vec origin_;
-  double strip_;
-  double bin_;
-  std::size_t strips_;
-  std::size_t bins_;
+  double row_;
+  double cell_;
+  std::size_t rows_;
+  std::size_t cells_;
   double max_cluster_length_;
-  bool one_tile_;
-  double tile_size_;
-  Vec tile_origin_;
+  bool one_origin_cell_;
+  double origin_cell_size_;
+  Vec origin_cell_corner_;
 };
 
-/// Where particles go in memory: strip by strip, by x inside a strip, four to a cluster. A strip
+/// Where particles go in memory: row by row, by x inside a row, four to a cluster. A row
 /// starts a new cluster and so does a gap; slots left over are empty.
 struct Layout {
-  std::vector<std::uint32_t> strip_begin;  ///< first cluster of each strip, and the end
+  std::vector<std::uint32_t> row_begin;  ///< first cluster of each row, and the end
   std::size_t slot_count = 0;
   std::size_t chunk = 1;  ///< clusters per chunk, the unit of work of a thread
 
@@ -86,7 +89,7 @@ struct Order {
   std::vector<std::uint32_t> source;  ///< per slot: index of the particle, or kEmpty
 };
 
-/// Orders the particles by (strip, x, y, id). The order of the input changes nothing. Slots with
+/// Orders the particles by (row, x, y, id). The order of the input changes nothing. Slots with
 /// id < 0 are empty and are left out.
 [[nodiscard]] Order sort_into_clusters(ThreadTeam& team, const Grid& grid,
                                        std::span<const double> x, std::span<const double> y,

@@ -65,32 +65,32 @@ struct PairView {
   const T* excess = nullptr;
   const T* volume = nullptr;
   const T* diffused = nullptr;
-  const T* stress = nullptr;
+  const T* pressure_term = nullptr;
 };
 
 /// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one entry per
-/// slot. Positions are relative to the origin of the cluster's tile, so that single precision
-/// resolves them in a domain of any size.
+/// slot. Positions are relative to the origin of the cluster's origin_cell, so that single
+/// precision resolves them in a domain of any size.
 template <typename T>
 struct PairArrays {
-  AlignedArray<T> x, y;      ///< X
-  AlignedArray<T> u, v;      ///< U
-  AlignedArray<T> excess;    ///< s
-  AlignedArray<T> volume;    ///< V
-  AlignedArray<T> stress;    ///< A
-  AlignedArray<T> diffused;  ///< psi of the density diffusion; empty where that is s
+  AlignedArray<T> x, y;           ///< X
+  AlignedArray<T> u, v;           ///< U
+  AlignedArray<T> excess;         ///< s
+  AlignedArray<T> volume;         ///< V
+  AlignedArray<T> pressure_term;  ///< A
+  AlignedArray<T> diffused;       ///< psi of the density diffusion; empty where that is s
 
   void resize(std::size_t slots) {
-    for (auto* a : {&x, &y, &u, &v, &excess, &volume, &stress}) a->resize(slots);
+    for (auto* a : {&x, &y, &u, &v, &excess, &volume, &pressure_term}) a->resize(slots);
   }
   [[nodiscard]] PairView<T> view() const {
     const T* psi = diffused.size() > 0 ? diffused.data() : excess.data();
     return {x.data(),      y.data(),      u.data(), v.data(),
-            excess.data(), volume.data(), psi,      stress.data()};
+            excess.data(), volume.data(), psi,      pressure_term.data()};
   }
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
-    for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &stress}) {
+    for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &pressure_term}) {
       sum += a->bytes();
     }
     return sum;
@@ -109,18 +109,18 @@ struct BoxesView {
 
 /// For every cluster of a set, the clusters of another that may hold a neighbour, chunk by chunk.
 /// A list of a set with itself is mutual: it holds each pair of clusters once, and what is summed
-/// over it goes to both. Every chunk then has sums of its own, for its clusters and for its guests,
+/// over it goes to both. Every chunk then has sums of its own, for its clusters and for its halos,
 /// so that no two chunks ever add to the same place and the result does not depend on threads.
 struct PairList {
   struct Chunk {
-    std::vector<std::uint32_t> entries;  ///< cluster index | tile shift code << kShiftBit
+    std::vector<std::uint32_t> entries;  ///< cluster index | origin_cell shift code << kShiftBit
     std::vector<std::uint32_t> begin;    ///< of each cluster of the chunk, and the end
     std::vector<std::uint32_t> targets;  ///< mutual: place of each entry in the chunk's sums
-    std::vector<std::uint32_t> guests;   ///< mutual: clusters of later chunks that have a place,
+    std::vector<std::uint32_t> halos;    ///< mutual: clusters of later chunks that have a place,
                                          ///< behind the chunk's own
 
-    /// Places in the sums: own clusters, guests, and one that nobody reads.
-    [[nodiscard]] std::size_t places() const { return begin.size() + guests.size(); }
+    /// Places in the sums: own clusters, halos, and one that nobody reads.
+    [[nodiscard]] std::size_t places() const { return begin.size() + halos.size(); }
   };
   static constexpr std::uint32_t kShiftBit = 28;
   static constexpr std::uint32_t kClusterMask = (1U << kShiftBit) - 1U;
@@ -130,7 +130,7 @@ struct PairList {
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
     for (const Chunk& c : chunks) {
-      for (const auto* a : {&c.entries, &c.begin, &c.targets, &c.guests}) sum += 4 * a->capacity();
+      for (const auto* a : {&c.entries, &c.begin, &c.targets, &c.halos}) sum += 4 * a->capacity();
     }
     return sum;
   }
@@ -156,12 +156,12 @@ inline constexpr SumBlocks kReinitialisationSums{2 * kCluster, 0, 0, kCluster};
 
 /// Sums that a chunk holds for a cluster of another: its `place` there, and the cluster's number in
 /// its own chunk.
-struct Arrival {
+struct Contribution {
   std::uint32_t chunk, place, cluster;
 };
 
-/// Tile shift codes 0-8: (X_j's tile - X_i's tile) + 1 in each direction, row by row; 4 is the same
-/// tile.
-inline constexpr std::uint32_t kSameTile = 4;
+/// OriginCell shift codes 0-8: (X_j's origin_cell - X_i's origin_cell) + 1 in each direction, row
+/// by row; 4 is the same origin_cell.
+inline constexpr std::uint32_t kSameOriginCell = 4;
 
 }  // namespace sluice

@@ -33,23 +33,23 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
     slot_x[s] = x[i];
     slot_y[s] = y[i];
     slot_id[s] = id[i];
-    if (method.lifted_wall && method.lifted_wall->place.contains(places[i])) {
+    if (method.gate && method.gate->place.contains(places[i])) {
       lifted_.push_back({places[i], s});
     }
   }
-  bounds_.assign_tiles(team, grid, layout_, slot_x.data(), slot_y.data(), slot_id.data());
+  bounds_.assign_origin_cells(team, grid, layout_, slot_x.data(), slot_y.data(), slot_id.data());
   // Empty slots lie on the other side than those of the fluid.
   const double h = method.smoothing_length;
   for (std::size_t s = 0; s < slots; ++s) {
     const bool used = slot_id[s] >= 0.0;
-    const Vec origin = grid.tile_center(bounds_.tile[s / kCluster]);
+    const Vec origin = grid.origin_cell_center(bounds_.origin_cell[s / kCluster]);
     arrays_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : -nowhere(s));
     arrays_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : -nowhere(s));
     arrays_.volume[s] = T{1};
   }
   bounds_.resize(layout_);
-  bounds_.assign_boxes(0, layout_.clusters(), grid, h, set().tracks);
-  bounds_.assign_strips(team, layout_);
+  bounds_.assign_boxes(0, layout_.clusters(), grid, h, set().paths);
+  bounds_.assign_rows(team, layout_);
 }
 
 template <typename T>
@@ -73,17 +73,17 @@ void DummyParticles<T>::sum_pressures(ThreadTeam& team, const Method& method,
       const T volume = T{1} / (T{1} + excess);
       arrays_.excess[s] = excess;
       arrays_.volume[s] = volume;
-      arrays_.stress[s] = excess * volume * volume;
+      arrays_.pressure_term[s] = excess * volume * volume;
     }
   });
 }
 
 template <typename T>
 void DummyParticles<T>::lift(const Method& method, double time) {
-  std::erase_if(lifted_, [&](const LiftedParticle& p) {
-    if (!method.lifted_wall->has_passed(p.place, time)) return false;
+  std::erase_if(lifted_, [&](const GateParticle& p) {
+    if (!method.gate->has_passed(p.place, time)) return false;
     arrays_.x[p.slot] = arrays_.y[p.slot] = static_cast<T>(-nowhere(p.slot));
-    arrays_.excess[p.slot] = arrays_.stress[p.slot] = T{0};
+    arrays_.excess[p.slot] = arrays_.pressure_term[p.slot] = T{0};
     arrays_.volume[p.slot] = T{1};
     return true;
   });

@@ -44,7 +44,7 @@ class DummyParticles {
   [[nodiscard]] std::size_t bytes() const { return arrays_.bytes() + excess_.bytes(); }
 
  private:
-  struct LiftedParticle {
+  struct GateParticle {
     Vec place;
     std::size_t slot;
   };
@@ -54,8 +54,8 @@ class DummyParticles {
   std::vector<std::uint32_t> source_;  // of the layout
   ClusterBounds bounds_;
   PairArrays<T> arrays_;
-  AlignedArray<T> excess_;              // sums of eq. 9
-  std::vector<LiftedParticle> lifted_;  // those of the lifted wall that still stand
+  AlignedArray<T> excess_;            // sums of eq. 9
+  std::vector<GateParticle> lifted_;  // those of the lifted wall that still stand
 };
 
 extern template class DummyParticles<float>;

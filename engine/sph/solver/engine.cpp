@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "engine/sph/method/kernel.hpp"
-#include "engine/sph/method/retired.hpp"
+#include "engine/sph/method/removed.hpp"
 #include "engine/sph/pairs/chunk_sums.hpp"
-#include "engine/sph/pairs/tracks.hpp"
+#include "engine/sph/pairs/list_paths.hpp"
 #include "engine/sph/solver/dummy_particles.hpp"
-#include "engine/sph/stability/crowding.hpp"
+#include "engine/sph/stability/neighbour_count.hpp"
 
 namespace sluice {
 namespace {
@@ -76,9 +76,9 @@ double scale_of_sums(const Method& m) {
 
 /// Lengths in m.
 template <typename T>
-TermConstants<T> term_constants(const Method& m, double tile_size) {
+TermConstants<T> term_constants(const Method& m, double origin_cell_size) {
   TermConstants<T> k;
-  k.tile_size = static_cast<T>(tile_size / m.smoothing_length);
+  k.origin_cell_size = static_cast<T>(origin_cell_size / m.smoothing_length);
   if (m.diffusion) {
     k.two_delta = static_cast<T>(2.0 * m.diffusion->delta);
     k.two_delta_wall = diffuses_with_walls(*m.diffusion) ? k.two_delta : T{0};
@@ -130,7 +130,7 @@ class Engine final : public Solver::Impl {
     team_.run(count, body);
   }
   [[nodiscard]] std::vector<double> wall_pressures() const override;
-  [[nodiscard]] double pair_lanes() const override;
+  [[nodiscard]] double pair_slots() const override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 
  private:
@@ -140,7 +140,7 @@ class Engine final : public Solver::Impl {
 
   // Order in memory.
   void sort();
-  bool retire();
+  bool remove();
   [[nodiscard]] bool somebody_in_a_solid();
   void reorder(Order order);
   void bind();
@@ -150,8 +150,8 @@ class Engine final : public Solver::Impl {
   // Passes.
   void step_leap_frog();
   void step_kick_drift_kick();
-  void advance_tracks(double duration);
-  void compare_with_tracks(const ParticleSpan& p, Motion& seen);
+  void advance_paths(double duration);
+  void compare_with_paths(const ParticleSpan& p, Motion& seen);
   void keep_lists(const Motion& seen);
   [[nodiscard]] bool order_due();
   void sum_wall_pressure();
@@ -195,10 +195,10 @@ class Engine final : public Solver::Impl {
   TermConstants<T> constants_;
   PairArrays<T> pairs_;
   PairScales scales_;
-  Tracks<T> tracks_;
+  ListPaths<T> paths_;
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
   ChunkSums<T> sums_;     // of fluid_to_fluid_
-  bool leaving_ = false;  // a particle is to be retired
+  bool leaving_ = false;  // a particle is to be removed
 
   DummyParticles<T> walls_;
 };
@@ -209,7 +209,7 @@ Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<V
     : grid_(m.domain, m.spacing, m.smoothing_length, state.particles.size() + walls.size()),
       sweeps_(select_sweeps<T>(m, exec.simd_target)),
       team_(exec.threads),
-      constants_(term_constants<T>(m, grid_.tile_size())),
+      constants_(term_constants<T>(m, grid_.origin_cell_size())),
       walls_(team_, grid_, m, walls) {
   method = m;
   execution = exec;
@@ -225,7 +225,7 @@ void Engine<T>::load(const SolverState& state) {
   step_count = state.step;
   time = state.time;
   time_step = state.time_step;
-  retired = state.retired;
+  removed = state.removed;
   particle_count = state.particles.size();
 
   Particles source = state.particles;
@@ -244,8 +244,8 @@ void Engine<T>::load(const SolverState& state) {
   }
   // Sorting what is in order keeps it, so this also restores the slots of a state that was taken.
   particles = std::move(source);
-  // Before it spoils what others feel. A state that was taken holds nobody who is to be retired.
-  if (fresh) retire();
+  // Before it spoils what others feel. A state that was taken holds nobody who is to be removed.
+  if (fresh) remove();
   reorder(sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id));
   walls_.lift(method, time);
   bind();
@@ -327,7 +327,7 @@ PairScales Engine<T>::scales() const {
     k.hydrostatic_middle = k.hydrostatic.dot(method.domain.min + method.domain.max) / 2.0;
   }
   k.grid = &grid_;
-  k.tile = bounds.tile.data();
+  k.origin_cell = bounds.origin_cell.data();
   return k;
 }
 
@@ -347,7 +347,7 @@ bool Engine<T>::somebody_in_a_solid() {
       .somebody;
 }
 
-/// Whether particles are to be retired, or their order has served its time.
+/// Whether particles are to be removed, or their order has served its time.
 template <typename T>
 bool Engine<T>::order_due() {
   if (method.in_solid && is_step_for(step_count, kSolidInterval, method.courant)) {
@@ -357,19 +357,19 @@ bool Engine<T>::order_due() {
 }
 
 template <typename T>
-void Engine<T>::advance_tracks(double duration) {
-  tracks_.age += duration * method.sound_speed / method.smoothing_length;
+void Engine<T>::advance_paths(double duration) {
+  paths_.age += duration * method.sound_speed / method.smoothing_length;
 }
 
 template <typename T>
-void Engine<T>::compare_with_tracks(const ParticleSpan& p, Motion& seen) {
-  sweeps_.updates.compare(p, pairs_, tracks_.view(), kLeeway<T>, static_cast<T>(tracks_.age), seen);
+void Engine<T>::compare_with_paths(const ParticleSpan& p, Motion& seen) {
+  sweeps_.updates.compare(p, pairs_, paths_.view(), kSkin<T>, static_cast<T>(paths_.age), seen);
 }
 
 /// New lists where the old ones no longer hold.
 template <typename T>
 void Engine<T>::keep_lists(const Motion& seen) {
-  if (!seen.strayed && tracks_.age <= kLeeway<double>.lifetime) return;
+  if (!seen.expired && paths_.age <= kSkin<double>.lifetime) return;
   const PassClock clock(seconds_of(Pass::sort));
   make_lists();
 }
@@ -377,7 +377,7 @@ void Engine<T>::keep_lists(const Motion& seen) {
 template <typename T>
 void Engine<T>::sort() {
   const PassClock clock(seconds_of(Pass::sort));
-  const bool fewer = leaving_ && retire();
+  const bool fewer = leaving_ && remove();
   reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id));
   particles.x_sorted = particles.x;
   particles.y_sorted = particles.y;
@@ -392,13 +392,13 @@ void Engine<T>::sort() {
 
 /// Takes out who is no particle of the fluid any more; whether there was any.
 template <typename T>
-bool Engine<T>::retire() {
+bool Engine<T>::remove() {
   const std::size_t before = particle_count;
   for (std::size_t s = 0; s < particles.size(); ++s) {
     if (particles.id[s] < 0.0) continue;
-    const auto cause = cause_to_retire(method, particles, s, time);
+    const auto cause = cause_to_remove(method, particles, s, time);
     if (!cause) continue;
-    retired.push_back(record_of(particles, s, *cause, step_count, time));
+    removed.push_back(record_of(particles, s, *cause, step_count, time));
     particles.id[s] = kNobody;
     --particle_count;
   }
@@ -428,16 +428,16 @@ void Engine<T>::reorder(Order order) {
   layout = std::move(order.layout);
 }
 
-/// Everything that follows from the order: tiles, pair arrays and lists.
+/// Everything that follows from the order: origin_cells, pair arrays and lists.
 template <typename T>
 void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
-  bounds.assign_tiles(team_, grid_, layout, particles.x_sorted.data(), particles.y_sorted.data(),
-                      particles.id.data());
+  bounds.assign_origin_cells(team_, grid_, layout, particles.x_sorted.data(),
+                             particles.y_sorted.data(), particles.id.data());
   scales_ = scales();
   pairs_.resize(slots);
   if (keeps_diffused(method)) pairs_.diffused.resize(slots);
-  tracks_.resize(slots);
+  paths_.resize(slots);
   for_chunks([&](const ParticleSpan& p, Motion&) { write_pairs(p); });
   make_lists();
 }
@@ -445,17 +445,17 @@ void Engine<T>::bind() {
 /// Pair lists for tracks that begin here and now.
 template <typename T>
 void Engine<T>::make_lists() {
-  tracks_.age = 0.0;
+  paths_.age = 0.0;
   bounds.resize(layout);
   for_chunks([&](const ParticleSpan& p, Motion&) {
-    tracks_.begin(pairs_, p.begin, p.end);
+    paths_.begin(pairs_, p.begin, p.end);
     bounds.assign_boxes(p.begin / kCluster, p.end / kCluster, grid_, method.smoothing_length,
-                        tracks_.view());
+                        paths_.view());
   });
-  bounds.assign_strips(team_, layout);
+  bounds.assign_rows(team_, layout);
   const PairRange<T> range{static_cast<T>(method.support_ratio() + kListSlack),
-                           constants_.tile_size, grid_.has_one_tile()};
-  const PairSet<T> fluid{layout, bounds, tracks_.view()};
+                           constants_.origin_cell_size, grid_.has_one_origin_cell()};
+  const PairSet<T> fluid{layout, bounds, paths_.view()};
   const PairSet<T> wall = walls_.set();
   const std::array lists{NewPairList<T>{&fluid, &fluid, &fluid_to_fluid_},
                          NewPairList<T>{&fluid, &wall, &fluid_to_wall_},
@@ -537,7 +537,7 @@ Motion Engine<T>::sweep(typename Sweeps<T>::Sweep loop, const SumBlocks& blocks,
 template <typename T>
 Rates<T> Engine<T>::gather(const ParticleSpan& chunk, const SumBlocks& blocks) {
   const std::size_t n = chunk.begin / (kCluster * layout.chunk);
-  sweeps_.updates.gather(sums_.arrivals(n), sums_.of_chunks(), blocks.stride, sums_.of(n));
+  sweeps_.updates.gather(sums_.contributions(n), sums_.of_chunks(), blocks.stride, sums_.of(n));
   return rates_of(chunk, blocks);
 }
 
@@ -653,14 +653,14 @@ void Engine<T>::step_leap_frog() {
   extremes.max_acceleration = std::sqrt(forces.acceleration_sq);
   const double last = time_step;
   choose_time_step();
-  advance_tracks(time_step);
+  advance_paths(time_step);
   const Motion motion = update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
     const Rates<T> rates = rates_of(chunk, kRateSums);
     for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.leap_frog(p, rates, 0.5 * (last + time_step), time_step);
       sweeps_.updates.measure(p, method, seen);
       write_pairs(p);
-      compare_with_tracks(p, seen);
+      compare_with_paths(p, seen);
     });
   });
   note_motion(motion);
@@ -675,18 +675,18 @@ void Engine<T>::step_leap_frog() {
 template <typename T>
 void Engine<T>::step_kick_drift_kick() {
   choose_time_step();
-  advance_tracks(0.5 * time_step);
+  advance_paths(0.5 * time_step);
   keep_lists(update_chunks([&](const ParticleSpan& chunk, Motion& seen) {
     for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.kick_drift(p, time_step);
       sweeps_.updates.write_places(p, scales_, pairs_);
       sweeps_.updates.write_velocities(p, scales_, pairs_);
-      compare_with_tracks(p, seen);
+      compare_with_paths(p, seen);
     });
   }));
   const bool shifting = shifting_due();
   const Shift shift = shifting ? shift_of_step() : Shift{};
-  advance_tracks(0.5 * time_step);
+  advance_paths(0.5 * time_step);
   keep_lists(sweep(shifting ? sweeps_.density_and_shift : sweeps_.density,
                    shifting ? kDensityAndShiftingSums : kDensitySums,
                    [&](const ParticleSpan& chunk, const Rates<T>& rates, Motion& seen) {
@@ -695,7 +695,7 @@ void Engine<T>::step_kick_drift_kick() {
                        if (shifting) sweeps_.updates.shift(p, rates, shift);
                        sweeps_.updates.write_places(p, scales_, pairs_);
                        sweeps_.updates.write_densities(p, scales_, pairs_);
-                       compare_with_tracks(p, seen);
+                       compare_with_paths(p, seen);
                      });
                    }));
   sum_wall_pressure();
@@ -736,7 +736,7 @@ std::vector<double> Engine<T>::wall_pressures() const {
 }
 
 template <typename T>
-double Engine<T>::pair_lanes() const {
+double Engine<T>::pair_slots() const {
   std::size_t entries = 0;
   for (const PairList::Chunk& chunk : fluid_to_fluid_.chunks) entries += chunk.entries.size();
   const auto pairs = static_cast<double>(kCluster * kCluster * entries);
@@ -745,7 +745,7 @@ double Engine<T>::pair_lanes() const {
 
 template <typename T>
 std::size_t Engine<T>::memory_bytes() const {
-  std::size_t bytes = pairs_.bytes() + walls_.bytes() + tracks_.bytes() + sums_.bytes() +
+  std::size_t bytes = pairs_.bytes() + walls_.bytes() + paths_.bytes() + sums_.bytes() +
                       fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
   for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
   return bytes + bounds.bytes();

@@ -33,7 +33,7 @@ class Solver::Impl {
   double time = 0.0;
   double time_step = 0.0;
   StepLimit step_limit = StepLimit::sound;
-  std::vector<Retired> retired;
+  std::vector<RemovedParticle> removed;
   Extremes extremes;
   std::size_t particle_count = 0;
   std::size_t wall_count = 0;
@@ -42,7 +42,7 @@ class Solver::Impl {
   std::uint64_t sort_count = 0;
 
   [[nodiscard]] virtual std::vector<double> wall_pressures() const = 0;
-  [[nodiscard]] virtual double pair_lanes() const = 0;
+  [[nodiscard]] virtual double pair_slots() const = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
 };
 

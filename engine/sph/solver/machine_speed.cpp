@@ -52,7 +52,7 @@ Method unit_method(const Method& wanted) {
   m.spacing = m.sound_speed = m.reference_density = 1.0;
   m.gravity = Vec::Zero();
   if (m.laminar_viscosity) m.laminar_viscosity->nu = 1e-3;
-  m.lifted_wall.reset();
+  m.gate.reset();
   m.wall_top.reset();
   m.domain = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
   return m;

@@ -9,8 +9,8 @@
 
 #include "engine/sph/loops/sweeps.hpp"
 #include "engine/sph/pairs/layout.hpp"
+#include "engine/sph/pairs/list_paths.hpp"
 #include "engine/sph/pairs/pair_arrays.hpp"
-#include "engine/sph/pairs/tracks.hpp"
 #include "engine/sph/threads/thread_team.hpp"
 
 namespace sluice {
@@ -26,28 +26,28 @@ namespace sluice {
 /// within the leeway of their tracks.
 struct ClusterBounds {
   AlignedArray<float> x_min, x_max, y_min, y_max;
-  AlignedArray<float> x_max_before;  ///< largest x_max of the strip up to the cluster
-  AlignedArray<float> x_min_after;   ///< least x_min of the strip from the cluster on
-  std::vector<Grid::Tile> tile;      ///< of the sorted places
-  std::vector<float> strip_y_min, strip_y_max;
-  std::vector<float> strip_y_max_before;  ///< largest strip_y_max up to the strip
-  std::vector<float> strip_y_min_after;   ///< least strip_y_min from the strip on
+  AlignedArray<float> x_max_before;           ///< largest x_max of the row up to the cluster
+  AlignedArray<float> x_min_after;            ///< least x_min of the row from the cluster on
+  std::vector<Grid::OriginCell> origin_cell;  ///< of the sorted places
+  std::vector<float> row_y_min, row_y_max;
+  std::vector<float> row_y_max_before;  ///< largest row_y_max up to the row
+  std::vector<float> row_y_min_after;   ///< least row_y_min from the row on
 
   /// Sorted places per slot in m; empty slots have id < 0.
-  void assign_tiles(ThreadTeam& team, const Grid& grid, const Layout& layout, const double* x,
-                    const double* y, const double* id);
+  void assign_origin_cells(ThreadTeam& team, const Grid& grid, const Layout& layout,
+                           const double* x, const double* y, const double* id);
 
   /// Room for the boxes of all clusters.
   void resize(const Layout& layout);
   /// The boxes of the clusters [begin, end) by their tracks; the smoothing length in m.
   template <typename T>
   void assign_boxes(std::size_t begin, std::size_t end, const Grid& grid, double smoothing_length,
-                    const TracksView<T>& tracks);
+                    const ListPathsView<T>& paths);
   /// What follows from all boxes.
-  void assign_strips(ThreadTeam& team, const Layout& layout);
+  void assign_rows(ThreadTeam& team, const Layout& layout);
 
-  /// No strip before this one reaches up to y.
-  [[nodiscard]] std::size_t first_strip(float y) const;
+  /// No row before this one reaches up to y.
+  [[nodiscard]] std::size_t first_row(float y) const;
 
   [[nodiscard]] BoxesView view() const {
     return {x_min.data(), x_max.data(),        y_min.data(),
@@ -55,7 +55,7 @@ struct ClusterBounds {
   }
   /// Of what there is per cluster.
   [[nodiscard]] std::size_t bytes() const {
-    std::size_t sum = tile.capacity() * sizeof(Grid::Tile);
+    std::size_t sum = origin_cell.capacity() * sizeof(Grid::OriginCell);
     for (const auto* a : {&x_min, &x_max, &y_min, &y_max, &x_max_before, &x_min_after}) {
       sum += a->bytes();
     }
@@ -68,15 +68,15 @@ template <typename T>
 struct PairSet {
   const Layout& layout;
   const ClusterBounds& bounds;
-  TracksView<T> tracks;
+  ListPathsView<T> paths;
 };
 
 /// How far the search goes.
 template <typename T>
 struct PairRange {
-  T cut_off;      ///< h
-  T tile_size;    ///< h
-  bool one_tile;  ///< Grid::has_one_tile()
+  T cut_off;             ///< h
+  T origin_cell_size;    ///< h
+  bool one_origin_cell;  ///< Grid::has_one_origin_cell()
 };
 
 /// A list to build: for every cluster of `self` the clusters of `other` of which a particle may

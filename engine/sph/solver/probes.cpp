@@ -16,12 +16,11 @@ constexpr double kBoxSlack = 1e-3;
 }  // namespace
 
 template <class Body>
-void FluidProbe::for_strips_in(float low, float high, const Body& body) const {
-  for (std::size_t strip = bounds_.first_strip(low); strip + 1 < layout_.strip_begin.size();
-       ++strip) {
-    if (bounds_.strip_y_min_after[strip] > high) break;
-    if (layout_.strip_begin[strip] == layout_.strip_begin[strip + 1]) continue;
-    if (bounds_.strip_y_max[strip] >= low && bounds_.strip_y_min[strip] <= high) body(strip);
+void FluidProbe::for_rows_in(float low, float high, const Body& body) const {
+  for (std::size_t row = bounds_.first_row(low); row + 1 < layout_.row_begin.size(); ++row) {
+    if (bounds_.row_y_min_after[row] > high) break;
+    if (layout_.row_begin[row] == layout_.row_begin[row + 1]) continue;
+    if (bounds_.row_y_max[row] >= low && bounds_.row_y_min[row] <= high) body(row);
   }
 }
 
@@ -30,35 +29,35 @@ void FluidProbe::for_each_in(const Box& box, const Body& body) const {
   const double h = method_.smoothing_length;
   const float x_min = outwards(box.min.x() / h - kBoxSlack, -1.0);
   const float x_max = outwards(box.max.x() / h + kBoxSlack, 1.0);
-  const auto in_strip = [&](std::size_t strip) {
+  const auto in_row = [&](std::size_t row) {
     const float* const reach = bounds_.x_max_before.data();
-    const std::uint32_t end = layout_.strip_begin[strip + 1];
+    const std::uint32_t end = layout_.row_begin[row + 1];
     const auto first = static_cast<std::size_t>(
-        std::lower_bound(reach + layout_.strip_begin[strip], reach + end, x_min) - reach);
+        std::lower_bound(reach + layout_.row_begin[row], reach + end, x_min) - reach);
     for (std::size_t c = first; c < end && bounds_.x_min_after[c] <= x_max; ++c) {
       for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {
         if (particles_.id[s] >= 0.0) body(s);
       }
     }
   };
-  for_strips_in(outwards(box.min.y() / h - kBoxSlack, -1.0),
-                outwards(box.max.y() / h + kBoxSlack, 1.0), in_strip);
+  for_rows_in(outwards(box.min.y() / h - kBoxSlack, -1.0),
+              outwards(box.max.y() / h + kBoxSlack, 1.0), in_row);
 }
 
 Probe FluidProbe::pressure(const Vec& point, double h) const {
-  // The part of each strip that lies in the circle of the support.
+  // The part of each row that lies in the circle of the support.
   thread_local std::vector<Surroundings::Row> rows;
   rows.clear();
   const Vec place = point / method_.smoothing_length;
   const double reach = method_.support_ratio() * h / method_.smoothing_length + kBoxSlack;
-  const auto add_row = [&](std::size_t strip) {
-    const double off = std::max({0.0, bounds_.strip_y_min[strip] - place.y() - kBoxSlack,
-                                 place.y() - bounds_.strip_y_max[strip] - kBoxSlack});
+  const auto add_row = [&](std::size_t row) {
+    const double off = std::max({0.0, bounds_.row_y_min[row] - place.y() - kBoxSlack,
+                                 place.y() - bounds_.row_y_max[row] - kBoxSlack});
     const double along = std::sqrt(std::max(0.0, reach * reach - off * off)) + kBoxSlack;
-    rows.push_back({layout_.strip_begin[strip], layout_.strip_begin[strip + 1],
+    rows.push_back({layout_.row_begin[row], layout_.row_begin[row + 1],
                     outwards(place.x() - along, -1.0), outwards(place.x() + along, 1.0)});
   };
-  for_strips_in(outwards(place.y() - reach, -1.0), outwards(place.y() + reach, 1.0), add_row);
+  for_rows_in(outwards(place.y() - reach, -1.0), outwards(place.y() + reach, 1.0), add_row);
   const PointSums sums =
       sum_around_(particles_, {point, h, method_.reference_density, bounds_.view(), rows});
   if (!(sums.kernel > 0.0)) return {};

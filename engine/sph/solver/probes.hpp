@@ -27,9 +27,9 @@ class FluidProbe {
   [[nodiscard]] double distance(const Vec& point) const;
 
  private:
-  /// Calls body(strip) for those that may hold particles from `low` to `high`, in h.
+  /// Calls body(row) for those that may hold particles from `low` to `high`, in h.
   template <class Body>
-  void for_strips_in(float low, float high, const Body& body) const;
+  void for_rows_in(float low, float high, const Body& body) const;
   /// Calls body(slot) for at least all particles in the box.
   template <class Body>
   void for_each_in(const Box& box, const Body& body) const;

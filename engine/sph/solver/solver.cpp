@@ -33,13 +33,13 @@ double Solver::time_step() const { return impl_->time_step; }
 StepLimit Solver::step_limit() const { return impl_->step_limit; }
 std::size_t Solver::particle_count() const { return impl_->particle_count; }
 std::size_t Solver::wall_count() const { return impl_->wall_count; }
-const std::vector<Retired>& Solver::retired() const { return impl_->retired; }
+const std::vector<RemovedParticle>& Solver::removed() const { return impl_->removed; }
 const Extremes& Solver::extremes() const { return impl_->extremes; }
 std::string_view Solver::simd_target() const { return impl_->simd_target; }
 int Solver::threads() const { return impl_->execution.threads; }
 const std::array<double, kPassCount>& Solver::pass_seconds() const { return impl_->pass_seconds; }
 std::uint64_t Solver::sort_count() const { return impl_->sort_count; }
-double Solver::pair_lanes() const { return impl_->pair_lanes(); }
+double Solver::pair_slots() const { return impl_->pair_slots(); }
 std::size_t Solver::memory_bytes() const { return impl_->memory_bytes(); }
 std::vector<double> Solver::wall_pressures() const { return impl_->wall_pressures(); }
 
@@ -48,7 +48,7 @@ SolverState Solver::state() const {
   out.step = impl_->step_count;
   out.time = impl_->time;
   out.time_step = impl_->time_step;
-  out.retired = impl_->retired;
+  out.removed = impl_->removed;
   for (const Field& field : kFields) {
     if (!carries(impl_->method.integrator, field)) continue;
     const std::vector<double>& from = impl_->particles.*field.member;

@@ -72,7 +72,7 @@ class Solver {
   [[nodiscard]] StepLimit step_limit() const;  ///< what limited it
   [[nodiscard]] std::size_t particle_count() const;
   [[nodiscard]] std::size_t wall_count() const;
-  [[nodiscard]] const std::vector<Retired>& retired() const;
+  [[nodiscard]] const std::vector<RemovedParticle>& removed() const;
   [[nodiscard]] const Extremes& extremes() const;
   [[nodiscard]] std::string_view simd_target() const;
   [[nodiscard]] int threads() const;
@@ -106,7 +106,7 @@ class Solver {
   [[nodiscard]] std::uint64_t sort_count() const;
   /// Vector lanes that a pair sum over the fluid spends per particle; about 28 of them hold a
   /// neighbour (Gaussian).
-  [[nodiscard]] double pair_lanes() const;
+  [[nodiscard]] double pair_slots() const;
   [[nodiscard]] std::size_t memory_bytes() const;
 
   class Impl;

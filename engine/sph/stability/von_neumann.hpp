@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/sph/method/method.hpp"
-#include "engine/sph/stability/free_sheet.hpp"
+#include "engine/sph/stability/surface_wave_limit.hpp"
 
 namespace sluice {
 

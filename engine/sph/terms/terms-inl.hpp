@@ -78,8 +78,8 @@ struct ShiftingTerm {
 /// Pressure part of the momentum sum, eq. 5: p_i/rho_i^2 + p_j/rho_j^2.
 struct PressureGradient {
   template <class V>
-  static HWY_INLINE V summand(V stress_i, V stress_j) {
-    return stress_i + stress_j;
+  static HWY_INLINE V summand(V pressure_term_i, V pressure_term_j) {
+    return pressure_term_i + pressure_term_j;
   }
 };
 

@@ -53,8 +53,8 @@ struct Checkpoint {
   SolverState solver;
   std::vector<SampleTable> samples;
   GuardBaselines guards;
-  std::uint64_t next_frame =
-      0;  ///< the next frame is due at the first step with time >= next_frame * interval
+  std::uint64_t next_snapshot =
+      0;  ///< the next frame is due at the first step with time >= next_snapshot * interval
 };
 
 }  // namespace sluice

@@ -25,15 +25,15 @@ std::uint64_t expected_bytes(const Checkpoint& checkpoint) {
   return bytes;
 }
 
-void require_expected(const Checkpoint& checkpoint, const Expectation& expectation) {
-  if (expectation.scene_hash && *expectation.scene_hash != checkpoint.scene_hash) {
+void require_expected(const Checkpoint& checkpoint, const CheckpointIdentity& identity) {
+  if (identity.scene_hash && *identity.scene_hash != checkpoint.scene_hash) {
     throw StorageError(
         StorageFault::wrong_scene,
         fmt::format("of another scene (hash {} where {} is expected): the scene was changed after "
                     "the run began; put it back, or run the new scene in a folder of its own",
-                    checkpoint.scene_hash, *expectation.scene_hash));
+                    checkpoint.scene_hash, *identity.scene_hash));
   }
-  if (expectation.integrator && *expectation.integrator != checkpoint.integrator) {
+  if (identity.integrator && *identity.integrator != checkpoint.integrator) {
     throw StorageError(StorageFault::wrong_scene,
                        "of a run with another integrator than the scene asks for");
   }
@@ -67,12 +67,12 @@ Bytes encode_checkpoint(const Checkpoint& checkpoint) {
   return archive.image();
 }
 
-Checkpoint decode_checkpoint(ByteSpan image, const Expectation& expectation) {
+Checkpoint decode_checkpoint(ByteSpan image, const CheckpointIdentity& identity) {
   ReadArchive archive(image);
   Checkpoint checkpoint;
   const std::uint64_t version = walk_format(archive, kCheckpointFormat);
   walk_identity(archive, checkpoint);
-  require_expected(checkpoint, expectation);
+  require_expected(checkpoint, identity);
   walk_physics(archive, checkpoint, CheckpointLayout::of_version(version));
   archive.require_all_met();
   require_sound(checkpoint, StorageFault::corrupt);
@@ -87,9 +87,9 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
   return path;
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& path, const Expectation& expectation) {
+Checkpoint read_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity) {
   const Bytes image = read_verified(path);
-  return naming(path, [&] { return decode_checkpoint(image, expectation); });
+  return naming(path, [&] { return decode_checkpoint(image, identity); });
 }
 
 }  // namespace sluice

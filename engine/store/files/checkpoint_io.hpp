@@ -18,7 +18,7 @@ namespace sluice {
 [[nodiscard]] std::optional<std::uint64_t> step_of_checkpoint_name(std::string_view name);
 
 /// What a checkpoint must belong to. An empty member is not checked.
-struct Expectation {
+struct CheckpointIdentity {
   std::optional<std::string> scene_hash;
   std::optional<Integrator> integrator;
 };
@@ -29,7 +29,7 @@ struct Expectation {
 [[nodiscard]] Bytes encode_checkpoint(const Checkpoint& checkpoint);
 /// Inverse of it. Throws StorageError: corrupt when anything is missing, unknown, of wrong type or
 /// shape or not finite; unsupported_version; not_ours for another format; wrong_scene.
-[[nodiscard]] Checkpoint decode_checkpoint(ByteSpan image, const Expectation& expectation = {});
+[[nodiscard]] Checkpoint decode_checkpoint(ByteSpan image, const CheckpointIdentity& identity = {});
 
 /// Publishes it in `folder` under its name so that it survives a power cut; returns the path.
 std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
@@ -37,6 +37,6 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
                                        FileSystem& system = FileSystem::real());
 /// Reads and checks a checkpoint file; the message of an error begins with the path.
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& path,
-                                         const Expectation& expectation = {});
+                                         const CheckpointIdentity& identity = {});
 
 }  // namespace sluice

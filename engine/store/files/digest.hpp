@@ -8,7 +8,7 @@
 namespace sluice {
 
 /// SHA-256 in hexadecimal over all that decides how a run goes on: step, time, every field in
-/// particle order, retired particles, series, guard baselines, next frame. Not in it: scene hash,
+/// particle order, removed particles, series, guard baselines, next frame. Not in it: scene hash,
 /// build, SIMD target and `bit_exact`. Changes with any bit of any of these.
 [[nodiscard]] std::string physics_digest(const Checkpoint& checkpoint);
 

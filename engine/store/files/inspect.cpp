@@ -12,9 +12,9 @@
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/trailer.hpp"
 #include "engine/store/files/checkpoint_io.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/layout.hpp"
 #include "engine/store/files/series_file.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 #include "engine/store/hdf5/hdf5_file.hpp"
 
 namespace sluice {
@@ -141,8 +141,8 @@ void require_sound_contents(const std::filesystem::path& path, const Json& facts
     (void)read_checkpoint(path);
   } else if (format == kSeriesFormat.name) {
     (void)read_series(path);
-  } else if (format == kFrameFormat.name) {
-    (void)read_frame(path);
+  } else if (format == kSnapshotFormat.name) {
+    (void)read_snapshot(path);
   } else {
     throw StorageError(StorageFault::not_ours, "none of our formats");
   }

@@ -15,7 +15,7 @@
 #include "engine/store/disk/apart.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/publish.hpp"
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 namespace sluice {
 namespace {
@@ -201,7 +201,7 @@ const fs::path& older_to_keep(const std::vector<fs::path>& older, std::uint64_t 
 
 }  // namespace
 
-fs::path JobPaths::frame(std::uint64_t index) const { return frames() / frame_name(index); }
+fs::path JobPaths::frame(std::uint64_t index) const { return frames() / snapshot_name(index); }
 
 fs::path JobPaths::checkpoint(std::uint64_t step) const { return root_ / checkpoint_name(step); }
 
@@ -218,7 +218,7 @@ std::vector<fs::path> JobPaths::bad_checkpoints() const {
   });
 }
 
-std::vector<fs::path> JobPaths::frame_files() const {
+std::vector<fs::path> JobPaths::snapshot_files() const {
   return list(frames(), [](std::string_view name) {
     return name.starts_with("frame-") && name.ends_with(".h5");
   });
@@ -313,12 +313,11 @@ void JobFolder::require_held() const {
 
 std::string JobFolder::scene_text() const { return read_text(paths_.scene(), kLargestScene); }
 
-std::optional<Restored> JobFolder::newest_checkpoint(const Expectation& expectation) {
+std::optional<Restored> JobFolder::newest_checkpoint(const CheckpointIdentity& identity) {
   std::vector<std::string> rejected;
   for (const fs::path& path : paths_.checkpoints()) {
     try {
-      Checkpoint checkpoint =
-          read_harmless(path, [&] { return read_checkpoint(path, expectation); });
+      Checkpoint checkpoint = read_harmless(path, [&] { return read_checkpoint(path, identity); });
       if (checkpoint.solver.step != step_of(path)) {
         throw StorageError(StorageFault::corrupt,
                            fmt::format("{}: holds step {}", path.string(), checkpoint.solver.step));

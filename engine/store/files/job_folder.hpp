@@ -37,8 +37,8 @@ class JobPaths {
   [[nodiscard]] std::vector<std::filesystem::path> checkpoints() const;
   /// Checkpoints that were put aside as unusable.
   [[nodiscard]] std::vector<std::filesystem::path> bad_checkpoints() const;
-  /// Frame files, oldest first.
-  [[nodiscard]] std::vector<std::filesystem::path> frame_files() const;
+  /// Snapshot files, oldest first.
+  [[nodiscard]] std::vector<std::filesystem::path> snapshot_files() const;
 
  private:
   std::filesystem::path root_;
@@ -110,7 +110,7 @@ class JobFolder {
   /// renamed to `.bad` and the one before it taken. Throws StorageError: no_usable_checkpoint when
   /// there are or were checkpoints and none can be used; wrong_scene, unsupported_version and io
   /// leave every file as it is, because the checkpoint may be whole.
-  [[nodiscard]] std::optional<Restored> newest_checkpoint(const Expectation& expectation);
+  [[nodiscard]] std::optional<Restored> newest_checkpoint(const CheckpointIdentity& identity);
 
   /// Publishes a checkpoint; it survives a power cut. Older ones stay until `prune`.
   std::filesystem::path write_checkpoint(const Checkpoint& checkpoint);

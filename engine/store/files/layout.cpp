@@ -27,7 +27,7 @@ std::string to_file(Integrator integrator) {
 std::uint64_t to_file(bool flag) { return flag ? 1 : 0; }
 double to_file(double value) { return value; }
 std::uint64_t to_file(std::uint64_t value) { return value; }
-std::uint64_t to_file(RetireCause cause) { return static_cast<std::uint64_t>(cause); }
+std::uint64_t to_file(RemovalCause cause) { return static_cast<std::uint64_t>(cause); }
 
 void from_file(const std::string& text, Integrator& integrator) {
   if (text != kLeapFrog && text != kKickDriftKick) {
@@ -43,11 +43,11 @@ void from_file(std::uint64_t number, bool& flag) {
 }
 void from_file(double number, double& value) { value = number; }
 void from_file(std::uint64_t number, std::uint64_t& value) { value = number; }
-void from_file(std::uint64_t number, RetireCause& cause) {
-  if (number >= kRetireCauses) {
+void from_file(std::uint64_t number, RemovalCause& cause) {
+  if (number >= kRemovalCauses) {
     throw_corrupt(fmt::format("data set /retired/cause holds {}, which is no cause", number));
   }
-  cause = static_cast<RetireCause>(number);
+  cause = static_cast<RemovalCause>(number);
 }
 
 /// An attribute that is converted on its way.
@@ -83,14 +83,14 @@ void particle_fields(Archive& archive, Integrator integrator, Subject& particles
   }
 }
 
-/// One member of all retired particles as a data set.
+/// One member of all removed particles as a data set.
 template <class Archive, class List, class Member>
-void retired_column(Archive& archive, const std::string& name, List& list, Member Retired::*member,
-                    const Label& label) {
+void removed_column(Archive& archive, const std::string& name, List& list,
+                    Member RemovedParticle::*member, const Label& label) {
   std::vector<decltype(to_file(Member{}))> column;
   column.reserve(list.size());
-  for (const Retired& retired : list) {
-    column.push_back(to_file(retired.*member));
+  for (const RemovedParticle& removed : list) {
+    column.push_back(to_file(removed.*member));
   }
   archive.data_set("/retired/" + name, column, Extents{list.size()}, label);
   if constexpr (Archive::kReads) {
@@ -101,19 +101,21 @@ void retired_column(Archive& archive, const std::string& name, List& list, Membe
 }
 
 template <class Archive, class Subject>
-void retired_particles(Archive& archive, Subject& list, RetiredLayout layout) {
+void removed_particles(Archive& archive, Subject& list, RemovedLayout layout) {
   archive.group("/retired");
   archive.count("/retired", "count", list);
-  retired_column(archive, "id", list, &Retired::id, {"1", "number given at the start"});
-  retired_column(archive, "cause", list, &Retired::cause, {"1", kCauses});
-  retired_column(archive, "step", list, &Retired::step, {"1", "step at which it left the sums"});
-  retired_column(archive, "time", list, &Retired::time, {"s", "time at which it left the sums"});
-  retired_column(archive, "x", list, &Retired::x, {"m", "last position, horizontal"});
-  retired_column(archive, "y", list, &Retired::y, {"m", "last position, vertical"});
-  if (layout == RetiredLayout::places) return;
-  retired_column(archive, "vx", list, &Retired::vx, {"m/s", "last velocity, horizontal"});
-  retired_column(archive, "vy", list, &Retired::vy, {"m/s", "last velocity, vertical"});
-  retired_column(archive, "density_excess", list, &Retired::density_excess,
+  removed_column(archive, "id", list, &RemovedParticle::id, {"1", "number given at the start"});
+  removed_column(archive, "cause", list, &RemovedParticle::cause, {"1", kCauses});
+  removed_column(archive, "step", list, &RemovedParticle::step,
+                 {"1", "step at which it left the sums"});
+  removed_column(archive, "time", list, &RemovedParticle::time,
+                 {"s", "time at which it left the sums"});
+  removed_column(archive, "x", list, &RemovedParticle::x, {"m", "last position, horizontal"});
+  removed_column(archive, "y", list, &RemovedParticle::y, {"m", "last position, vertical"});
+  if (layout == RemovedLayout::places) return;
+  removed_column(archive, "vx", list, &RemovedParticle::vx, {"m/s", "last velocity, horizontal"});
+  removed_column(archive, "vy", list, &RemovedParticle::vy, {"m/s", "last velocity, vertical"});
+  removed_column(archive, "density_excess", list, &RemovedParticle::density_excess,
                  {"kg/m^3", "last density less the reference density"});
 }
 
@@ -226,27 +228,27 @@ void physics(Archive& archive, Subject& checkpoint, const CheckpointLayout& layo
   archive.attribute("/", "step", checkpoint.solver.step);
   archive.attribute("/", "time", checkpoint.solver.time);
   archive.attribute("/", "time_step", checkpoint.solver.time_step);
-  archive.attribute("/", "next_frame", checkpoint.next_frame);
+  archive.attribute("/", "next_frame", checkpoint.next_snapshot);
   particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
-  retired_particles(archive, checkpoint.solver.retired, layout.retired);
+  removed_particles(archive, checkpoint.solver.removed, layout.removed);
   samples(archive, checkpoint.samples, layout.samples);
   guard_baselines(archive, checkpoint.guards);
 }
 
-struct FrameField {
+struct SnapshotField {
   std::string_view name, unit, description;
-  std::vector<float> Frame::*member;
+  std::vector<float> Snapshot::*member;
 };
-constexpr std::array kFrameFields{
-    FrameField{"x", "m", "position from the origin, horizontal", &Frame::x},
-    FrameField{"y", "m", "position from the origin, vertical", &Frame::y},
-    FrameField{"vx", "m/s", "velocity, horizontal", &Frame::vx},
-    FrameField{"vy", "m/s", "velocity, vertical", &Frame::vy},
-    FrameField{"pressure", "Pa", "pressure, eq. 3", &Frame::pressure},
+constexpr std::array kSnapshotFields{
+    SnapshotField{"x", "m", "position from the origin, horizontal", &Snapshot::x},
+    SnapshotField{"y", "m", "position from the origin, vertical", &Snapshot::y},
+    SnapshotField{"vx", "m/s", "velocity, horizontal", &Snapshot::vx},
+    SnapshotField{"vy", "m/s", "velocity, vertical", &Snapshot::vy},
+    SnapshotField{"pressure", "Pa", "pressure, eq. 3", &Snapshot::pressure},
 };
 
 template <class Archive, class Subject>
-void frame_layout(Archive& archive, Subject& frame, std::uint64_t version) {
+void snapshot_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.attribute("/", "step", frame.step);
   archive.attribute("/", "time", frame.time);
   if (version > 1) {
@@ -256,7 +258,7 @@ void frame_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.group("/particles");
   archive.count("/particles", "count", frame.x);
   const Extents shape{frame.x.size()};
-  for (const FrameField& field : kFrameFields) {
+  for (const SnapshotField& field : kSnapshotFields) {
     archive.data_set("/particles/" + std::string(field.name), frame.*field.member, shape,
                      {std::string(field.unit), std::string(field.description)});
   }
@@ -313,11 +315,11 @@ void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables
   sample_tables(archive, tables);
 }
 
-void walk_frame(WriteArchive& archive, const Frame& frame) {
-  frame_layout(archive, frame, kFrameFormat.version);
+void walk_snapshot(WriteArchive& archive, const Snapshot& frame) {
+  snapshot_layout(archive, frame, kSnapshotFormat.version);
 }
-void walk_frame(ReadArchive& archive, Frame& frame, std::uint64_t version) {
-  frame_layout(archive, frame, version);
+void walk_snapshot(ReadArchive& archive, Snapshot& frame, std::uint64_t version) {
+  snapshot_layout(archive, frame, version);
 }
 
 }  // namespace sluice

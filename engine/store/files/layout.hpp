@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/store/files/checkpoint.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/sample_table.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 #include "engine/store/hdf5/archive.hpp"
 
 namespace sluice {
@@ -23,19 +23,19 @@ struct Format {
 };
 inline constexpr Format kCheckpointFormat{"sluice-checkpoint", 5, 3};
 inline constexpr Format kSeriesFormat{"sluice-series", 2, 1};
-inline constexpr Format kFrameFormat{"sluice-frame", 2, 1};
+inline constexpr Format kSnapshotFormat{"sluice-frame", 2, 1};
 
 /// How a file keeps the samples: the first versions had a group for each sensor.
 enum class SampleLayout { by_sensor, tables };
 /// How a checkpoint keeps what left: before version 5 without velocities and densities.
-enum class RetiredLayout { places, states };
+enum class RemovedLayout { places, states };
 struct CheckpointLayout {
   SampleLayout samples = SampleLayout::tables;
-  RetiredLayout retired = RetiredLayout::states;
+  RemovedLayout removed = RemovedLayout::states;
 
   [[nodiscard]] static CheckpointLayout of_version(std::uint64_t version) {
     return {version < 4 ? SampleLayout::by_sensor : SampleLayout::tables,
-            version < 5 ? RetiredLayout::places : RetiredLayout::states};
+            version < 5 ? RemovedLayout::places : RemovedLayout::states};
   }
 };
 [[nodiscard]] inline SampleLayout series_layout(std::uint64_t version) {
@@ -59,8 +59,8 @@ void walk_samples(WriteArchive& archive, const std::vector<SampleTable>& tables)
 void walk_samples(ReadArchive& archive, std::vector<SampleTable>& tables, SampleLayout layout);
 void walk_samples(DigestArchive& archive, const std::vector<SampleTable>& tables);
 
-void walk_frame(WriteArchive& archive, const Frame& frame);
+void walk_snapshot(WriteArchive& archive, const Snapshot& frame);
 /// The first version names no origin.
-void walk_frame(ReadArchive& archive, Frame& frame, std::uint64_t version);
+void walk_snapshot(ReadArchive& archive, Snapshot& frame, std::uint64_t version);
 
 }  // namespace sluice

@@ -48,7 +48,7 @@ void require_particles(const Rules& rules, Integrator integrator, const Particle
   }
 }
 
-void require_retired(const Rules& rules, const std::vector<Retired>& list) {
+void require_removed(const Rules& rules, const std::vector<RemovedParticle>& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string what = fmt::format("retired particle {}: ", i);
     rules.require_finite(what + "id", list[i].id);
@@ -123,7 +123,7 @@ void require_sound(const Checkpoint& checkpoint, StorageFault fault) {
   rules.require_finite("time", checkpoint.solver.time);
   rules.require_finite("time_step", checkpoint.solver.time_step);
   require_particles(rules, checkpoint.integrator, checkpoint.solver.particles);
-  require_retired(rules, checkpoint.solver.retired);
+  require_removed(rules, checkpoint.solver.removed);
   for (const GuardNumber& number : kGuardNumbers) {
     rules.require_finite(fmt::format("guard number {}", number.name),
                          checkpoint.guards.*number.member);

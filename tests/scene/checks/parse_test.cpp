@@ -102,7 +102,7 @@ TEST(ParseScene, RefusesWhatFollowsAZeroByte) {
 
 TEST(ParseScene, LeavesOutWhatHasNoKey) {
   const Scene s = parsed(base_scene());
-  EXPECT_FALSE(s.method.lifted_wall);
+  EXPECT_FALSE(s.method.gate);
   EXPECT_TRUE(s.sensors.empty());
   EXPECT_TRUE(s.obstacles.empty());
   EXPECT_FALSE(s.frames || s.scales);
@@ -113,12 +113,12 @@ TEST(ParseScene, TurnsAGateIntoAWallOfThreeSpacingsThatIsLifted) {
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   text["numerics"] = {{"scheme", "recommended"}, {"laminar_viscosity", {{"nu", 1e-4}}}};
   const Scene s = parsed(text);
-  ASSERT_TRUE(s.gate && s.method.lifted_wall && s.method.laminar_viscosity);
+  ASSERT_TRUE(s.gate && s.method.gate && s.method.laminar_viscosity);
   EXPECT_EQ(s.gate->height, 1.0) << "the tank's";
-  EXPECT_EQ(s.method.lifted_wall->place.min, Vec(1.0, 0.0));
-  EXPECT_NEAR(s.method.lifted_wall->place.max.x(), 1.15, 1e-12);
-  EXPECT_EQ(s.method.lifted_wall->place.max.y(), 1.0);
-  EXPECT_EQ(s.method.lifted_wall->speed, 3.46);
+  EXPECT_EQ(s.method.gate->place.min, Vec(1.0, 0.0));
+  EXPECT_NEAR(s.method.gate->place.max.x(), 1.15, 1e-12);
+  EXPECT_EQ(s.method.gate->place.max.y(), 1.0);
+  EXPECT_EQ(s.method.gate->speed, 3.46);
   EXPECT_EQ(s.method.laminar_viscosity->nu, 1e-4);
 }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/scene/forecast/stability.hpp"
-#include "engine/scene/forecast/work.hpp"
+#include "engine/scene/forecast/workload.hpp"
 #include "tests/scene/support.hpp"
 
 namespace sluice {

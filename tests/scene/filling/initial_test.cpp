@@ -1,4 +1,5 @@
 #include "engine/scene/filling/initial.hpp"
+#include "engine/scene/geometry/geometry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +44,7 @@ TEST(InitialParticles, StandBehindAGateOfThreeLayersOfWallParticles) {
   EXPECT_EQ(made.state.particles.size(), 200U) << "the column touches the gate, no more";
   ASSERT_EQ(made.walls.size(), without + 3 * 12);
   for (std::size_t i = 0; i < made.walls.size(); ++i) {
-    EXPECT_EQ(scene.method.lifted_wall->place.contains(made.walls[i]), i >= without);
+    EXPECT_EQ(scene.method.gate->place.contains(made.walls[i]), i >= without);
   }
   EXPECT_GT(testing::smallest_distance(made.walls), 0.049);
 }
@@ -68,7 +69,7 @@ TEST(InitialParticles, FillNothingButWhatTheSolverIsPromised) {
   const SolverState state = create_particles(parsed(base_scene())).state;
   EXPECT_EQ(state.step, 0U);
   EXPECT_EQ(state.time, 0.0);
-  EXPECT_TRUE(state.retired.empty());
+  EXPECT_TRUE(state.removed.empty());
   for (const Field& field : kFields) {
     const std::vector<double>& values = state.particles.*field.member;
     const bool filled = field.name == "x" || field.name == "y" || field.name == "vx" ||

@@ -165,7 +165,7 @@ TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
   // The right wall, x > 0.57 m: after 0.14 s its edge is between the fourth and the fifth row.
   Method m = full_method();
   m.reinitialisation.reset();
-  m.lifted_wall = LiftedWall{{{0.57, -0.51}, {0.9, 0.4}}, 3.0};
+  m.gate = GateMotion{{{0.57, -0.51}, {0.9, 0.4}}, 3.0};
   SolverState state = start_from(scene.fluid);
   state.time = 0.14;
   std::vector<Vec> standing;
@@ -176,7 +176,7 @@ TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
   for (m.integrator = Integrator::modified_leap_frog;; m.integrator = Integrator::kick_drift_kick) {
     Solver lifted(m, state, scene.walls, {});
     Method still = m;
-    still.lifted_wall.reset();
+    still.gate.reset();
     Solver fewer(still, state, standing, {});
     lifted.step();
     fewer.step();

@@ -47,7 +47,7 @@ std::vector<std::uint32_t> plainly_sorted(const Grid& grid, const Places& p) {
     if (p.id[s] >= 0.0) all.push_back(s);
   }
   const auto key = [&](std::uint32_t s) {
-    return std::tuple(grid.strip(p.y[s]), p.x[s], p.y[s], p.id[s]);
+    return std::tuple(grid.row(p.y[s]), p.x[s], p.y[s], p.id[s]);
   };
   std::sort(all.begin(), all.end(),
             [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
@@ -57,11 +57,11 @@ std::vector<std::uint32_t> plainly_sorted(const Grid& grid, const Places& p) {
 /// Strips begin new clusters, clusters are short, and only the last slots of one are empty.
 void expect_sound(const Grid& grid, const Places& p, const Order& order) {
   const Layout& layout = order.layout;
-  ASSERT_EQ(layout.strip_begin.size(), grid.strips() + 1);
+  ASSERT_EQ(layout.row_begin.size(), grid.rows() + 1);
   ASSERT_EQ(layout.slots(), order.source.size());
-  ASSERT_LE(kCluster * layout.strip_begin.back(), layout.slots());
-  for (std::size_t strip = 0; strip < grid.strips(); ++strip) {
-    for (std::size_t c = layout.strip_begin[strip]; c < layout.strip_begin[strip + 1]; ++c) {
+  ASSERT_LE(kCluster * layout.row_begin.back(), layout.slots());
+  for (std::size_t row = 0; row < grid.rows(); ++row) {
+    for (std::size_t c = layout.row_begin[row]; c < layout.row_begin[row + 1]; ++c) {
       const std::uint32_t first = order.source[kCluster * c];
       ASSERT_NE(first, Order::kEmpty);
       bool ended = false;
@@ -70,7 +70,7 @@ void expect_sound(const Grid& grid, const Places& p, const Order& order) {
         ended = ended || particle == Order::kEmpty;
         ASSERT_EQ(particle == Order::kEmpty, ended);
         if (ended) continue;
-        ASSERT_EQ(grid.strip(p.y[particle]), strip);
+        ASSERT_EQ(grid.row(p.y[particle]), row);
         ASSERT_LE(p.x[particle] - p.x[first], grid.max_cluster_length());
       }
     }
@@ -87,11 +87,11 @@ void expect_order(const Box& domain, const Box& filled, std::size_t slots) {
   for (const int threads : {2, 3}) {
     const Order again = sorted(threads, grid, p);
     EXPECT_EQ(again.source, order.source);
-    EXPECT_EQ(again.layout.strip_begin, order.layout.strip_begin);
+    EXPECT_EQ(again.layout.row_begin, order.layout.row_begin);
   }
 }
 
-TEST(Layout, OrdersByStripPlaceAndNumberWhateverTheThreads) {
+TEST(Layout, OrdersByRowPlaceAndNumberWhateverTheThreads) {
   expect_order({{0, 0}, {6, 4}}, {{0, 0}, {6, 4}}, 4000);
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/sph/loops/simd_target.hpp"
-#include "engine/sph/method/retired.hpp"
+#include "engine/sph/method/removed.hpp"
 #include "tests/sph/test_fluids.hpp"
 
 namespace sluice {
@@ -41,17 +41,17 @@ SolverState without(SolverState state, std::size_t index) {
 struct Fault {
   std::vector<double> Particles::*field;
   double value;
-  RetireCause cause;
+  RemovalCause cause;
 };
 const Fault kFaults[] = {
-    {&Particles::density_excess, 301.0, RetireCause::too_dense},
-    {&Particles::density_excess, -301.0, RetireCause::too_thin},
-    {&Particles::vx, 20.1, RetireCause::too_fast},
-    {&Particles::vy, -1e200, RetireCause::too_fast},
-    {&Particles::x, kNan, RetireCause::not_finite},
-    {&Particles::y, -kInfinity, RetireCause::not_finite},
-    {&Particles::vx, kNan, RetireCause::not_finite},
-    {&Particles::density_excess, kInfinity, RetireCause::not_finite},
+    {&Particles::density_excess, 301.0, RemovalCause::too_dense},
+    {&Particles::density_excess, -301.0, RemovalCause::too_thin},
+    {&Particles::vx, 20.1, RemovalCause::too_fast},
+    {&Particles::vy, -1e200, RemovalCause::too_fast},
+    {&Particles::x, kNan, RemovalCause::not_finite},
+    {&Particles::y, -kInfinity, RemovalCause::not_finite},
+    {&Particles::vx, kNan, RemovalCause::not_finite},
+    {&Particles::density_excess, kInfinity, RemovalCause::not_finite},
 };
 
 TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
@@ -65,14 +65,14 @@ TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
         SolverState bad = good;
         (bad.particles.*fault.field)[kBad] = fault.value;
         Solver solver(m, bad, {}, {});
-        ASSERT_EQ(solver.retired().size(), 1U);
-        EXPECT_EQ(solver.retired()[0].id, static_cast<double>(kBad));
-        EXPECT_EQ(solver.retired()[0].cause, fault.cause) << fault.value;
+        ASSERT_EQ(solver.removed().size(), 1U);
+        EXPECT_EQ(solver.removed()[0].id, static_cast<double>(kBad));
+        EXPECT_EQ(solver.removed()[0].cause, fault.cause) << fault.value;
         EXPECT_EQ(solver.particle_count(), 99U);
         run_steps(solver, 40);
         SolverState seen = solver.state();
-        EXPECT_EQ(seen.retired.size(), 1U);
-        seen.retired.clear();
+        EXPECT_EQ(seen.removed.size(), 1U);
+        seen.removed.clear();
         expect_same_bits(seen, expected.state(), std::string(to_string(fault.cause)));
       }
     }
@@ -104,10 +104,10 @@ TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
       for (const std::string& target : simd_targets()) {
         Solver whole(m, start, {}, {1, target});
         run_steps(whole, 60);
-        ASSERT_GT(whole.retired().size(), 0U) << "nobody excluded: this test proves nothing";
-        EXPECT_LT(whole.retired().size(), 20U);
-        EXPECT_TRUE(is_exclusion(whole.retired()[0].cause));
-        const std::uint64_t at = whole.retired()[0].step;
+        ASSERT_GT(whole.removed().size(), 0U) << "nobody excluded: this test proves nothing";
+        EXPECT_LT(whole.removed().size(), 20U);
+        EXPECT_TRUE(is_exclusion(whole.removed()[0].cause));
+        const std::uint64_t at = whole.removed()[0].step;
         EXPECT_GT(at, 7U) << "excluded when it was loaded";
         for (const std::uint64_t stop : {at - 1, at, at + 1}) {
           for (const int threads : {2, 3, 8}) {
@@ -145,7 +145,7 @@ TEST(Exclusion, TakesTheExtremesOfTheOthers) {
       }
       EXPECT_DOUBLE_EQ(solver.extremes().max_speed, fastest);
     }
-    EXPECT_GT(solver.retired().size(), 0U);
+    EXPECT_GT(solver.removed().size(), 0U);
   }
 }
 
@@ -161,8 +161,8 @@ TEST(Exclusion, DoesNotShortenTheStepForAParticleThatIsThrownAbout) {
     run_steps(solver, 2);
     EXPECT_DOUBLE_EQ(m.least_time_step(), 0.05 * m.smoothing_length / m.sound_speed);
     EXPECT_EQ(solver.particle_count(), 0U);
-    ASSERT_EQ(solver.retired().size(), 1U);
-    EXPECT_EQ(solver.retired()[0].cause, RetireCause::too_fast);
+    ASSERT_EQ(solver.removed().size(), 1U);
+    EXPECT_EQ(solver.removed()[0].cause, RemovalCause::too_fast);
   }
 }
 
@@ -176,9 +176,9 @@ TEST(Exclusion, BooksMassMomentumAndEnergy) {
   p.vy[kBad] = -4.0;
   const Vec place = p.position(kBad);
   const Solver solver(m, state, {}, {});
-  ASSERT_EQ(solver.retired().size(), 1U);
+  ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
-  departed.add(m, solver.retired()[0]);
+  departed.add(m, solver.removed()[0]);
   const double mass = 1000.0 * 0.1 * 0.1;
   EXPECT_EQ(departed.count, 1U);
   EXPECT_DOUBLE_EQ(departed.mass, mass);
@@ -196,9 +196,9 @@ TEST(Exclusion, KeepsNoNumberThatIsNone) {
   state.particles.vx[kBad] = kInfinity;
   state.particles.density_excess[kBad] = kNan;
   const Solver solver(plain_method(), state, {}, {});
-  ASSERT_EQ(solver.retired().size(), 1U);
+  ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
-  departed.add(plain_method(), solver.retired()[0]);
+  departed.add(plain_method(), solver.removed()[0]);
   EXPECT_TRUE(std::isfinite(departed.energy.total()));
   EXPECT_TRUE(departed.momentum.allFinite());
 }
@@ -212,12 +212,12 @@ TEST(Solids, TakeWhoIsDeepInThemForALeakWithinFourCrossings) {
     fluid.add({0.0, 0.0}, {10.0, 0.0});
     fluid.add({-1.0, 0.0}, {-1.0, 0.0});
     Solver solver(m, start_from(fluid), {}, {});
-    while (solver.retired().empty() && solver.step_count() < 200) solver.step();
-    ASSERT_EQ(solver.retired().size(), 1U);
-    EXPECT_EQ(solver.retired()[0].id, 0.0);
-    EXPECT_EQ(solver.retired()[0].cause, RetireCause::leaked);
-    EXPECT_GT(solver.retired()[0].x, 0.5);
-    EXPECT_LE(solver.retired()[0].x, 0.5 + 10.0 * 4.0 * 0.1 / 20.0);
+    while (solver.removed().empty() && solver.step_count() < 200) solver.step();
+    ASSERT_EQ(solver.removed().size(), 1U);
+    EXPECT_EQ(solver.removed()[0].id, 0.0);
+    EXPECT_EQ(solver.removed()[0].cause, RemovalCause::leaked);
+    EXPECT_GT(solver.removed()[0].x, 0.5);
+    EXPECT_LE(solver.removed()[0].x, 0.5 + 10.0 * 4.0 * 0.1 / 20.0);
   }
 }
 
@@ -243,9 +243,9 @@ TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
       fluid.add(place);
     }
     Solver solver(m, start_from(fluid), {}, {});
-    ASSERT_EQ(solver.retired().size(), 3U);
-    for (const Retired& each : solver.retired()) {
-      EXPECT_EQ(each.cause, each.id == 4.0 ? RetireCause::overtopped : RetireCause::leaked);
+    ASSERT_EQ(solver.removed().size(), 3U);
+    for (const RemovedParticle& each : solver.removed()) {
+      EXPECT_EQ(each.cause, each.id == 4.0 ? RemovalCause::overtopped : RemovalCause::leaked);
     }
   }
 }

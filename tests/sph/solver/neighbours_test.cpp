@@ -1,6 +1,6 @@
 // No pair within the support is ever missed: the engine's rates against all pairs, step after step,
-// where lists are old, particles fast, strips and tiles end. A missed pair at the very edge of the
-// support changes a rate by 1e-4 of a summand, far above the tolerances here.
+// where lists are old, particles fast, rows and origin_cells end. A missed pair at the very edge of
+// the support changes a rate by 1e-4 of a summand, far above the tolerances here.
 
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ void expect_all_pairs_in_both(Method m, const Fluid& fluid, const std::vector<Ve
 TEST(Neighbours, AreAllFoundWhileAJetFliesThroughABlock) {
   Dice dice(41);
   Fluid fluid = random_block(dice, {-0.8, -0.8}, 16, 10, kH, 0.2, 1.0, 10.0);
-  // Faster than sound: particles that no track is fast enough for.
+  // Faster than sound: particles that no path is fast enough for.
   for (int k = 0; k < 6; ++k) fluid.add({-1.5 + 0.0973 * k, -0.2}, {25.0, 1.0}, 0.0);
   expect_all_pairs_in_both(pair_method(Precision::mixed), fluid, {}, 40, "jet");
 }
@@ -157,7 +157,7 @@ TEST(Neighbours, AreThoseOfBeforeBesideAParticleFarOutsideTheDomain) {
   }
 }
 
-TEST(Neighbours, AreAllFoundAcrossTheTilesOfAVastDomain) {
+TEST(Neighbours, AreAllFoundAcrossTheOriginCellsOfAVastDomain) {
   Dice dice(46);
   // 512 h is 51.2 m: patches that straddle each of these edges, corners among them.
   Fluid fluid;

@@ -82,7 +82,7 @@ TEST_P(ThreadsAndRestart, TheSplashSortsAndLosesParticlesElseItProvesLittle) {
   const Whole run = uninterrupted(method(), 60);
   EXPECT_GT(run.sorted_at.size(), 2U);
   EXPECT_LT(run.sorted_at.size(), 30U);
-  EXPECT_GT(run.end.retired.size(), 0U);
+  EXPECT_GT(run.end.removed.size(), 0U);
 }
 
 TEST_P(ThreadsAndRestart, AnyNumberOfThreadsGivesTheSameBits) {
@@ -130,7 +130,7 @@ TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
 Method lifting(Method m) {
   m.laminar_viscosity = LaminarViscosity{0.01};
   m.wall_artificial_viscosity.reset();
-  m.lifted_wall = LiftedWall{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
+  m.gate = GateMotion{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
   return m;
 }
 
@@ -292,7 +292,7 @@ RC_GTEST_PROP(RestartProperty, AnySmallFluidGoesOnWithTheSameBits, ()) {
     RC_ASSERT(same);
   }
   RC_ASSERT(a.time == b.time);
-  RC_ASSERT(a.retired.size() == b.retired.size());
+  RC_ASSERT(a.removed.size() == b.removed.size());
 }
 
 }  // namespace

@@ -69,8 +69,8 @@ Fluid block_with_an_outsider(const Vec& place, const Vec& velocity) {
   return fluid;
 }
 
-void run_until_retired(Solver& solver) {
-  for (int n = 0; n < 200 && solver.retired().empty(); ++n) solver.step();
+void run_until_removed(Solver& solver) {
+  for (int n = 0; n < 200 && solver.removed().empty(); ++n) solver.step();
 }
 
 TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
@@ -85,12 +85,12 @@ TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
     fluid.add({0.0, -1.5}, {0.0, -20.0});
     Solver solver(m, start_from(fluid), {}, {});
     run_steps(solver, 100);
-    ASSERT_EQ(solver.retired().size(), 4U);
+    ASSERT_EQ(solver.removed().size(), 4U);
     EXPECT_EQ(solver.particle_count(), 1U);
     EXPECT_EQ(solver.state().particles.size(), 1U);
-    for (const Retired& r : solver.retired()) {
+    for (const RemovedParticle& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 3.0;
-      EXPECT_EQ(r.cause, over ? RetireCause::overtopped : RetireCause::leaked) << r.id;
+      EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
       EXPECT_FALSE(m.domain.contains({r.x, r.y})) << r.id;
       EXPECT_GT(r.step, 0U);
       EXPECT_GT(r.time, 0.0);
@@ -113,10 +113,10 @@ TEST(Leaving, OverTheRimIsOvertoppingBeforeItFallsBehindTheWall) {
     fluid.add({1.2, -0.5}, {4.0, 0.0});   // has been behind the wall from the start
     Solver solver(m, start_from(fluid), {}, {});
     while (solver.time() < 0.4) solver.step();
-    ASSERT_EQ(solver.retired().size(), 3U);
-    for (const Retired& r : solver.retired()) {
+    ASSERT_EQ(solver.removed().size(), 3U);
+    for (const RemovedParticle& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 2.0;
-      EXPECT_EQ(r.cause, over ? RetireCause::overtopped : RetireCause::leaked) << r.id;
+      EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
       EXPECT_EQ(m.domain.contains({r.x, r.y}), over) << r.id;
     }
   }
@@ -128,9 +128,9 @@ TEST(Leaving, WithoutATankIsALeakEverywhere) {
   fluid.add({0.0, 1.5}, {0.0, 20.0});
   fluid.add({0.0, 0.0});
   Solver solver(m, start_from(fluid), {}, {});
-  run_until_retired(solver);
-  ASSERT_EQ(solver.retired().size(), 1U);
-  EXPECT_EQ(solver.retired()[0].cause, RetireCause::leaked);
+  run_until_removed(solver);
+  ASSERT_EQ(solver.removed().size(), 1U);
+  EXPECT_EQ(solver.removed()[0].cause, RemovalCause::leaked);
 }
 
 TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
@@ -142,10 +142,10 @@ TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
     // It passes close to the block and is within its support when it leaves.
     const Fluid start = block_with_an_outsider({0.02, 1.94}, {0.0, 4.0});
     Solver solver(m, start_from(start), {}, {});
-    run_until_retired(solver);
-    ASSERT_EQ(solver.retired().size(), 1U);
-    ASSERT_EQ(solver.retired()[0].id, 40.0);
-    EXPECT_LT(solver.retired()[0].y, 2.1) << "it is far away: this test proves nothing";
+    run_until_removed(solver);
+    ASSERT_EQ(solver.removed().size(), 1U);
+    ASSERT_EQ(solver.removed()[0].id, 40.0);
+    EXPECT_LT(solver.removed()[0].y, 2.1) << "it is far away: this test proves nothing";
     for (int n = 0; n < 5; ++n) {
       const Fluid fluid = fluid_of(solver.state());
       ASSERT_EQ(fluid.size(), 40U);
@@ -156,7 +156,7 @@ TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
                   "acceleration");
       expect_near(seen.density, expected.density, eps * expected.density_size, "density rate");
     }
-    EXPECT_EQ(solver.retired().size(), 1U) << "retired more than once";
+    EXPECT_EQ(solver.removed().size(), 1U) << "retired more than once";
     const Fluid fluid = fluid_of(solver.state());
     double kinetic = 0.0;
     for (const Vec& v : fluid.v) kinetic += 0.5 * 10.0 * v.squaredNorm();
@@ -176,7 +176,7 @@ TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
       Solver solver(m, start_from(fluid), {{0.0, -1.0}}, {2, ""});
       run_steps(solver, 40);
       EXPECT_EQ(solver.particle_count(), 0U);
-      EXPECT_EQ(solver.retired().size(), 3U);
+      EXPECT_EQ(solver.removed().size(), 3U);
       EXPECT_EQ(solver.energy().total(), 0.0);
       EXPECT_EQ(solver.extremes().max_speed, 0.0);
       EXPECT_EQ(solver.surge_front().weight, 0.0);
@@ -209,7 +209,7 @@ TEST(Leaving, ARunawayNeitherGrowsMemoryNorForcesASortAtEachStep) {
   }
 }
 
-TEST(Leaving, AParticleThatStartsOutsideIsRetiredAtTheFirstStep) {
+TEST(Leaving, AParticleThatStartsOutsideIsRemovedAtTheFirstStep) {
   for (const Integrator integrator : kIntegrators) {
     Fluid fluid;
     fluid.add({0.0, 0.0});
@@ -217,7 +217,7 @@ TEST(Leaving, AParticleThatStartsOutsideIsRetiredAtTheFirstStep) {
     Solver solver(method_of(integrator), start_from(fluid), {}, {});
     solver.step();
     EXPECT_EQ(solver.particle_count(), 1U);
-    EXPECT_EQ(solver.retired().size(), 1U);
+    EXPECT_EQ(solver.removed().size(), 1U);
   }
 }
 

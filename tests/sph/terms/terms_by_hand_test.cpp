@@ -269,8 +269,8 @@ TEST(WallShearTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
       m.spacing = spacing;
       m.wall_shear = WallShear{0.1};
       for (const double speed : {0.5, 3.0}) {
-        const double stress = 0.1 / 2.0 * kRho0 * speed * speed;
-        EXPECT_NEAR(stress_at_wall(m, speed), stress, 1e-12 * stress);
+        const double pressure_term = 0.1 / 2.0 * kRho0 * speed * speed;
+        EXPECT_NEAR(stress_at_wall(m, speed), pressure_term, 1e-12 * pressure_term);
       }
     }
   }

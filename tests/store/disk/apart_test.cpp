@@ -11,9 +11,9 @@
 
 #include "engine/store/disk/trailer.hpp"
 #include "engine/store/files/checkpoint_io.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/inspect.hpp"
 #include "engine/store/files/series_file.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 #include "tests/store/expect_fault.hpp"
 #include "tests/store/fixtures.hpp"
 
@@ -179,7 +179,7 @@ TEST_F(MadeToHurt, CheckpointsAndFramesAreInspected) {
   const fs::path checkpoint = write_checkpoint(folder_.path(), make_checkpoint(100));
   expect_survival(checkpoint, [&] { (void)inspect_file(checkpoint); });
   const fs::path frame = folder_ / "frame.h5";
-  write_frame(frame, make_test_frame(50));
+  write_snapshot(frame, make_test_snapshot(50));
   expect_survival(frame, [&] { (void)inspect_file(frame); });
   EXPECT_EQ(read_, 2 * kCopies) << "what is wrong is part of an inspection";
 }

@@ -13,10 +13,10 @@
 #include "engine/store/disk/publish.hpp"
 #include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/digest.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/inspect.hpp"
 #include "engine/store/files/layout.hpp"
 #include "engine/store/files/series_file.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 #include "engine/store/hdf5/hdf5_file.hpp"
 #include "tests/store/expect_fault.hpp"
 #include "tests/store/fixtures.hpp"
@@ -40,9 +40,9 @@ TEST(CheckpointFile, ComesBackToTheLastBitForBothIntegrators) {
   }
 }
 
-TEST(CheckpointFile, ComesBackWithNothingRetiredAndNoSamples) {
+TEST(CheckpointFile, ComesBackWithNothingRemovedAndNoSamples) {
   Checkpoint written = make_checkpoint(0);
-  written.solver.retired.clear();
+  written.solver.removed.clear();
   written.samples.clear();
   written.bit_exact = true;
   EXPECT_TRUE(same_bits(decode_checkpoint(encode_checkpoint(written)), written));
@@ -84,11 +84,11 @@ TEST(CheckpointFile, OfAnotherSceneOrIntegratorIsRefused) {
 TEST(CheckpointFile, OfAnotherFormatIsRefused) {
   const TemporaryFolder folder;
   write_series(folder / "series.h5", make_samples());
-  write_frame(folder / "frame.h5", make_test_frame(3));
+  write_snapshot(folder / "frame.h5", make_test_snapshot(3));
   publish(folder / "checkpoint.h5", encode_checkpoint(make_checkpoint(1)), Durability::power_cut);
   expect_fault(StorageFault::not_ours, [&] { (void)read_checkpoint(folder / "series.h5"); });
   expect_fault(StorageFault::not_ours, [&] { (void)read_series(folder / "frame.h5"); });
-  expect_fault(StorageFault::not_ours, [&] { (void)read_frame(folder / "checkpoint.h5"); });
+  expect_fault(StorageFault::not_ours, [&] { (void)read_snapshot(folder / "checkpoint.h5"); });
 }
 
 TEST(CheckpointFile, IsNotWrittenFromContentThatBreaksTheRules) {
@@ -101,7 +101,7 @@ TEST(CheckpointFile, IsNotWrittenFromContentThatBreaksTheRules) {
       [](Checkpoint& c) { c.solver.particles.ax.resize(50); },  // not carried by this integrator
       [](Checkpoint& c) { c.solver.time = kNan; },
       [](Checkpoint& c) { c.solver.time_step = -HUGE_VAL; },
-      [](Checkpoint& c) { c.solver.retired[1].x = kNan; },
+      [](Checkpoint& c) { c.solver.removed[1].x = kNan; },
       [](Checkpoint& c) { c.guards.energy_scale = kNan; },
       [](Checkpoint& c) { c.samples[0].weight[0] = 0.5; },  // NaN with a weight
       [](Checkpoint& c) { c.samples[0].values[1] = HUGE_VAL; },
@@ -342,8 +342,8 @@ Bytes with_places_alone(ByteSpan image) {
 TEST(CheckpointLayout, WithoutTheVelocitiesOfWhatLeftIsStillRead) {
   Checkpoint written = make_checkpoint(5);
   const Bytes old = as_version(with_places_alone(encode_checkpoint(written)), 4);
-  for (Retired& retired : written.solver.retired) {
-    retired.vx = retired.vy = retired.density_excess = 0.0;
+  for (RemovedParticle& removed : written.solver.removed) {
+    removed.vx = removed.vy = removed.density_excess = 0.0;
   }
   EXPECT_TRUE(same_bits(decode_checkpoint(old), written));
   expect_fault(StorageFault::corrupt, [&] { (void)decode_checkpoint(as_version(old, 5)); });
@@ -394,7 +394,7 @@ TEST(CheckpointLayout, IsDescribedWithEveryNameInItsDocument) {
     }
   };
   const TemporaryFolder folder;
-  write_frame(folder / "frame.h5", make_test_frame(3));
+  write_snapshot(folder / "frame.h5", make_test_snapshot(3));
   require_described(read_verified(folder / "frame.h5"));
   require_described(encode_checkpoint(make_checkpoint(1)));
   require_described(encode_checkpoint(make_checkpoint(1, 50, Integrator::kick_drift_kick)));
@@ -422,21 +422,21 @@ TEST(SeriesFile, ThatIsReplacedStaysWholeForWhoHasItOpen) {
 TEST(FrameFile, ComesBackToTheLastBit) {
   const TemporaryFolder folder;
   for (const std::size_t count : {0UL, 1UL, 100000UL}) {
-    const Frame frame = make_test_frame(count);
-    write_frame(folder / frame_name(12), frame);
-    EXPECT_EQ(read_frame(folder / "frame-000012.h5"), frame);
-    EXPECT_EQ(std::signbit(read_frame(folder / "frame-000012.h5").vy.empty()
+    const Snapshot frame = make_test_snapshot(count);
+    write_snapshot(folder / snapshot_name(12), frame);
+    EXPECT_EQ(read_snapshot(folder / "frame-000012.h5"), frame);
+    EXPECT_EQ(std::signbit(read_snapshot(folder / "frame-000012.h5").vy.empty()
                                ? -0.0F
-                               : read_frame(folder / "frame-000012.h5").vy[0]),
+                               : read_snapshot(folder / "frame-000012.h5").vy[0]),
               true);
   }
 }
 
 TEST(FrameFile, WithFieldsOfDifferentLengthIsNotWritten) {
   const TemporaryFolder folder;
-  Frame frame = make_test_frame(5);
+  Snapshot frame = make_test_snapshot(5);
   frame.pressure.pop_back();
-  expect_fault(StorageFault::invalid_content, [&] { write_frame(folder / "f.h5", frame); });
+  expect_fault(StorageFault::invalid_content, [&] { write_snapshot(folder / "f.h5", frame); });
   EXPECT_TRUE(names_in(folder.path()).empty());
 }
 
@@ -444,7 +444,7 @@ TEST(FrameFile, HoldsThePressureOfTheEquationOfState) {
   const SolverState state = make_checkpoint(3).solver;
   Method method;
   method.sound_speed = 20.0;
-  const Frame frame = make_frame(state, method);
+  const Snapshot frame = make_snapshot(state, method);
   // eq. 3: p = c^2 (rho - rho_0)
   EXPECT_EQ(frame.pressure[10], static_cast<float>(400.0 * state.particles.density_excess[10]));
   EXPECT_EQ(frame.step, 3U);

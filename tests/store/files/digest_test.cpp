@@ -57,19 +57,19 @@ TEST(PhysicsDigest, ChangesWithEveryBitOfEveryNumber) {
   flip(checkpoint.solver.step);
   flip(checkpoint.solver.time);
   flip(checkpoint.solver.time_step);
-  flip(checkpoint.next_frame);
+  flip(checkpoint.next_snapshot);
   for (const Field& field : kFields) {
     flip(checkpoint.solver.particles.*field.member);
   }
-  for (Retired& retired : checkpoint.solver.retired) {
-    flip(retired.id);
-    flip(retired.step);
-    flip(retired.time);
-    flip(retired.x);
-    flip(retired.y);
-    flip(retired.vx);
-    flip(retired.vy);
-    flip(retired.density_excess);
+  for (RemovedParticle& removed : checkpoint.solver.removed) {
+    flip(removed.id);
+    flip(removed.step);
+    flip(removed.time);
+    flip(removed.x);
+    flip(removed.y);
+    flip(removed.vx);
+    flip(removed.vy);
+    flip(removed.density_excess);
   }
   for (SampleTable& table : checkpoint.samples) {
     flip(table.time);
@@ -90,7 +90,7 @@ TEST(PhysicsDigest, ChangesWithTheOrderOfParticlesCausesAndTexts) {
   std::swap(swapped.solver.particles.x[0], swapped.solver.particles.x[1]);
   EXPECT_NE(physics_digest(swapped), before);
   Checkpoint cause = make_checkpoint(20, 3);
-  cause.solver.retired[0].cause = RetireCause::leaked;
+  cause.solver.removed[0].cause = RemovalCause::leaked;
   EXPECT_NE(physics_digest(cause), before);
   Checkpoint name = make_checkpoint(20, 3);
   name.samples[0].names[0] = "P2";

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "engine/store/files/checkpoint_io.hpp"
-#include "engine/store/files/frame_io.hpp"
 #include "engine/store/files/series_file.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 #include "tests/store/fixtures.hpp"
 
 namespace sluice::test {
@@ -23,7 +23,7 @@ TEST(H5py, ReadsOurFilesAndGetsTextsAsText) {
   const TemporaryFolder folder;
   const fs::path checkpoint = write_checkpoint(folder.path(), make_checkpoint(123));
   write_series(folder / "series.h5", make_samples());
-  write_frame(folder / "frame.h5", make_test_frame(5));
+  write_snapshot(folder / "frame.h5", make_test_snapshot(5));
   const fs::path here = fs::path(__FILE__).parent_path();
   const fs::path document = here.parent_path().parent_path() / "schemas" / "checkpoint.md";
   const std::string command = kPython + " '" + (here / "read_with_h5py.py").string() + "' '" +

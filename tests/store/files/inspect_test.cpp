@@ -43,7 +43,7 @@ TEST(Inspect, TellsWhatACheckpointHolds) {
 TEST(Inspect, TellsWhatSeriesAndFramesHold) {
   const TemporaryFolder folder;
   write_series(folder / "series.h5", make_samples());
-  write_frame(folder / "frame.h5", make_test_frame(5));
+  write_snapshot(folder / "frame.h5", make_test_snapshot(5));
   EXPECT_TRUE(mentions(inspect_file(folder / "series.h5"), "sluice-series"));
   EXPECT_TRUE(mentions(inspect_file(folder / "series.h5"), "(1 not a number)"));
   EXPECT_TRUE(mentions(inspect_file(folder / "frame.h5"), "/particles/pressure"));

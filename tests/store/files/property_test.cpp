@@ -94,7 +94,7 @@ RC_GTEST_PROP(CheckpointFile, AnySoundContentComesBack, ()) {
       checkpoint.solver.particles.*field.member = finite_doubles(count);
     }
   }
-  checkpoint.solver.retired.resize(*rc::gen::inRange<std::size_t>(0, 5), {1.0});
+  checkpoint.solver.removed.resize(*rc::gen::inRange<std::size_t>(0, 5), {1.0});
   checkpoint.samples.clear();
   std::uint64_t sensors = 0;
   for (std::size_t i = *rc::gen::inRange<std::size_t>(0, 4); i > 0; --i) {

@@ -1,4 +1,4 @@
-#include "engine/sph/stability/crowding.hpp"
+#include "engine/sph/stability/neighbour_count.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -54,7 +54,7 @@ std::uint32_t most_neighbours(ThreadTeam& team, const Layout& layout, const Pair
   team.run(chunks.size(), [&](std::size_t k) {
     const auto own = static_cast<std::ptrdiff_t>(chunks[k].begin.size() - 1);
     std::vector<std::uint32_t> all(met[k].begin(), met[k].begin() + own);
-    for (const Arrival& a : sums.arrivals(k)) all[a.cluster] += met[a.chunk][a.place];
+    for (const Contribution& a : sums.contributions(k)) all[a.cluster] += met[a.chunk][a.place];
     for (const std::uint32_t entries : all) most_of[k] = std::max(most_of[k], entries);
   });
   std::uint32_t most = 0;

@@ -1,4 +1,4 @@
-#include "engine/report/evidence.hpp"
+#include "engine/report/comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,60 +69,63 @@ std::vector<PressurePair> pair_pressures(const Scene& scene, const std::vector<S
   return pairs;
 }
 
-PressureEvidence weigh(PressurePair pair, const Scene& scene, const Reference& reference,
-                       double shift) {
+PressureComparison weigh(PressurePair pair, const Scene& scene, const Reference& reference,
+                         double shift) {
   const auto error = [&](std::span<const double> averages) {
     return relative_l2(reference.pressure_times, averages, pair.reference->values,
                        kComparisonWindow);
   };
-  PressureEvidence evidence;
-  evidence.relative_l2_not_shifted = error(interval_averages(pair.curve, reference.pressure_times));
+  PressureComparison comparison;
+  comparison.relative_l2_not_shifted =
+      error(interval_averages(pair.curve, reference.pressure_times));
   for (double& time : pair.curve.time) time += shift;
   const auto averages = interval_averages(pair.curve, reference.pressure_times);
-  evidence.sensor = pair.sensor->name;
-  evidence.height = pair.sensor->position.y();
-  evidence.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
-                                                                  : scene.method.smoothing_length;
-  evidence.air_pressure = pair.sensor->air_pressure;
-  evidence.reference = pair.reference->name;
-  evidence.peak_statistics = pair.reference->peak;
-  evidence.simulation = measure(reference.pressure_times, averages);
-  evidence.simulation.arrival = first_passage(pair.curve, kArrivalLevel, 1.0);
-  evidence.simulation.peak = peak(pair.curve, kImpactWindow);
-  evidence.experiment = measure(reference.pressure_times, pair.reference->values);
-  evidence.experiment.arrival = pair.reference->arrival;
-  evidence.relative_l2 = error(averages);
-  evidence.simulated = std::move(pair.curve);
-  return evidence;
+  comparison.sensor = pair.sensor->name;
+  comparison.height = pair.sensor->position.y();
+  comparison.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
+                                                                    : scene.method.smoothing_length;
+  comparison.air_pressure = pair.sensor->air_pressure;
+  comparison.reference = pair.reference->name;
+  comparison.peak_statistics = pair.reference->peak;
+  comparison.simulation = measure(reference.pressure_times, averages);
+  comparison.simulation.arrival = first_passage(pair.curve, kArrivalLevel, 1.0);
+  comparison.simulation.peak = peak(pair.curve, kImpactWindow);
+  comparison.experiment = measure(reference.pressure_times, pair.reference->values);
+  comparison.experiment.arrival = pair.reference->arrival;
+  comparison.relative_l2 = error(averages);
+  comparison.simulated = std::move(pair.curve);
+  return comparison;
 }
 
 /// Nothing unless all of the experiment's sensors have one.
-std::optional<double> mean_of(const Evidence& evidence,
-                              std::optional<double> PressureEvidence::*error) {
-  if (evidence.pressures.size() != evidence.reference->pressures.size()) return std::nullopt;
+std::optional<double> mean_of(const Comparison& comparison,
+                              std::optional<double> PressureComparison::*error) {
+  if (comparison.pressures.size() != comparison.reference->pressures.size()) return std::nullopt;
   double sum = 0.0;
-  for (const PressureEvidence& one : evidence.pressures) {
+  for (const PressureComparison& one : comparison.pressures) {
     if (!(one.*error)) return std::nullopt;
     sum += *(one.*error);
   }
-  return sum / static_cast<double>(evidence.pressures.size());
+  return sum / static_cast<double>(comparison.pressures.size());
 }
 
-void compare_pressures(Evidence& evidence, const Scene& scene, std::vector<PressurePair> pairs) {
+void compare_pressures(Comparison& comparison, const Scene& scene,
+                       std::vector<PressurePair> pairs) {
   if (pairs.empty()) return;
   const auto arrival = first_passage(pairs.front().curve, kArrivalLevel, 1.0);
-  if (arrival) evidence.shift = pairs.front().reference->arrival - *arrival;
+  if (arrival) comparison.shift = pairs.front().reference->arrival - *arrival;
   for (PressurePair& pair : pairs) {
-    evidence.pressures.push_back(
-        weigh(std::move(pair), scene, *evidence.reference, evidence.shift.value_or(0.0)));
+    comparison.pressures.push_back(
+        weigh(std::move(pair), scene, *comparison.reference, comparison.shift.value_or(0.0)));
   }
-  if (evidence.shift) evidence.mean_relative_l2 = mean_of(evidence, &PressureEvidence::relative_l2);
-  evidence.mean_relative_l2_not_shifted =
-      mean_of(evidence, &PressureEvidence::relative_l2_not_shifted);
+  if (comparison.shift)
+    comparison.mean_relative_l2 = mean_of(comparison, &PressureComparison::relative_l2);
+  comparison.mean_relative_l2_not_shifted =
+      mean_of(comparison, &PressureComparison::relative_l2_not_shifted);
 }
 
-void compare_levels(Evidence& evidence, const Scene& scene, const std::vector<Series>& all) {
-  const Reference& reference = *evidence.reference;
+void compare_levels(Comparison& comparison, const Scene& scene, const std::vector<Series>& all) {
+  const Reference& reference = *comparison.reference;
   const Window everything{-1.0, reference.level_times.centers().back() + 1.0};
   for (const LevelReference& one : reference.levels) {
     const Sensor* sensor =
@@ -133,7 +136,7 @@ void compare_levels(Evidence& evidence, const Scene& scene, const std::vector<Se
     const auto difference =
         rms_difference(reference.level_times, interval_averages(curve, reference.level_times),
                        one.values, everything);
-    evidence.levels.push_back({sensor->name, one.name, difference, std::move(curve)});
+    comparison.levels.push_back({sensor->name, one.name, difference, std::move(curve)});
   }
 }
 
@@ -153,26 +156,26 @@ std::optional<double> front_delay(const Curve& simulated, const Curve& measured)
   return sum / count;
 }
 
-void compare_front(Evidence& evidence, const Scene& scene, const std::vector<Series>& all) {
-  const Curve& measured = evidence.reference->front;
+void compare_front(Comparison& comparison, const Scene& scene, const std::vector<Series>& all) {
+  const Curve& measured = comparison.reference->front;
   for (const Sensor& sensor : scene.sensors) {
     const Series* series = series_of(all, sensor);
     if (sensor.kind != SensorKind::surge_front || series == nullptr) continue;
     Curve curve = scaled_curve(*series, scene, scene.scales->width, scene.scales->height);
     const Intervals times(measured.time);
-    evidence.front = FrontEvidence{
+    comparison.front = FrontComparison{
         sensor.name,
         rms_difference(times, interval_averages(curve, times), measured.value, {-1.0, 1e9}),
         front_delay(curve, measured),
         {}};
-    evidence.front->simulated = std::move(curve);
+    comparison.front->simulated = std::move(curve);
     return;
   }
 }
 
 }  // namespace
 
-std::optional<double> PressureEvidence::place_in_band() const {
+std::optional<double> PressureComparison::place_in_band() const {
   if (!simulation.peak) return std::nullopt;
   return (simulation.peak->value - peak_statistics.low) /
          (peak_statistics.high - peak_statistics.low);
@@ -187,16 +190,16 @@ Curve pressure_curve(const Series& series, const Scene& scene, double tau) {
   return scaled_curve(filtered, scene, 0.0, unit);
 }
 
-Evidence compare(const Scene& scene, const std::vector<Series>& series, const Reference& reference,
-                 double tau) {
-  Evidence evidence;
-  evidence.reference = &reference;
-  evidence.tau = tau;
-  evidence.time_unit = time_unit(scene);
-  compare_pressures(evidence, scene, pair_pressures(scene, series, reference, tau));
-  compare_levels(evidence, scene, series);
-  compare_front(evidence, scene, series);
-  return evidence;
+Comparison compare(const Scene& scene, const std::vector<Series>& series,
+                   const Reference& reference, double tau) {
+  Comparison comparison;
+  comparison.reference = &reference;
+  comparison.tau = tau;
+  comparison.time_unit = time_unit(scene);
+  compare_pressures(comparison, scene, pair_pressures(scene, series, reference, tau));
+  compare_levels(comparison, scene, series);
+  compare_front(comparison, scene, series);
+  return comparison;
 }
 
 }  // namespace sluice

@@ -1,4 +1,4 @@
-#include "engine/scene/geometry/open_share.hpp"
+#include "engine/scene/geometry/open_fraction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,8 @@ std::vector<Shape> obstacles_near(const Scene& scene, const Vec& point, double r
 
 }  // namespace
 
-OpenShare::OpenShare(const Scene& scene, const Vec& point, double h)
-    : gate_(scene.method.lifted_wall) {
+OpenFraction::OpenFraction(const Scene& scene, const Vec& point, double h)
+    : gate_(scene.method.gate) {
   const std::vector<Shape> solids = obstacles_near(scene, point, scene.method.support_ratio() * h);
   const auto is_open = [&](const Vec& place) {
     return (!scene.tank || !in_wall(*scene.tank, place)) &&
@@ -60,7 +60,7 @@ OpenShare::OpenShare(const Scene& scene, const Vec& point, double h)
   for (Held& one : held_) one.weight /= whole;
 }
 
-double OpenShare::at(double time) const {
+double OpenFraction::at(double time) const {
   double share = without_gate_;
   for (const Held& one : held_) {
     if (gate_->has_passed(one.place, time)) share += one.weight;

@@ -5,7 +5,7 @@
 # the spread of its first peak, three more of the recommended one that of its error, each started
 # with its own displacement of 1e-4 dx. Their medians are judged.
 #
-#   tests/evidence.sh [SLUICE]      SLUICE: the program; default: built in build/release
+#   tests/validation.sh [SLUICE]      SLUICE: the program; default: built in build/release
 #
 # Exits 0 only when every line passes. Set KEEP to a folder to keep the two job folders there.
 set -euo pipefail
@@ -64,5 +64,5 @@ done
 errors=()
 for seed in 1 2 3; do errors+=("$(displaced dambreak "$seed" 1.399)"); done
 
-python3 tests/report/check_evidence.py "$work/dambreak-paper.report.json" "$work/dambreak.report.json" \
+python3 tests/report/check_validation.py "$work/dambreak-paper.report.json" "$work/dambreak.report.json" \
   --peaks "${peaks[@]}" --errors "${errors[@]}"

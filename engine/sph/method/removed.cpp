@@ -1,20 +1,20 @@
-#include "engine/sph/method/retired.hpp"
+#include "engine/sph/method/removed.hpp"
 
 #include <cmath>
 
 namespace sluice {
 namespace {
 
-std::optional<RetireCause> cause_to_exclude(const Method& method, const Vec& place,
-                                            const Vec& velocity, double density_excess) {
+std::optional<RemovalCause> cause_to_exclude(const Method& method, const Vec& place,
+                                             const Vec& velocity, double density_excess) {
   if (!place.allFinite() || !velocity.allFinite() || !std::isfinite(density_excess)) {
-    return RetireCause::not_finite;
+    return RemovalCause::not_finite;
   }
   if (!(velocity.squaredNorm() <= method.sound_speed * method.sound_speed)) {
-    return RetireCause::too_fast;
+    return RemovalCause::too_fast;
   }
   if (std::abs(density_excess) <= method.most_density_excess()) return {};
-  return density_excess > 0.0 ? RetireCause::too_dense : RetireCause::too_thin;
+  return density_excess > 0.0 ? RemovalCause::too_dense : RemovalCause::too_thin;
 }
 
 double finite_or(double value, double otherwise) {
@@ -23,39 +23,39 @@ double finite_or(double value, double otherwise) {
 
 }  // namespace
 
-std::string_view to_string(RetireCause cause) {
+std::string_view to_string(RemovalCause cause) {
   switch (cause) {
-    case RetireCause::overtopped:
+    case RemovalCause::overtopped:
       return "overtopped";
-    case RetireCause::leaked:
+    case RemovalCause::leaked:
       return "leaked";
-    case RetireCause::not_finite:
+    case RemovalCause::not_finite:
       return "not finite";
-    case RetireCause::too_fast:
+    case RemovalCause::too_fast:
       return "too fast";
-    case RetireCause::too_dense:
+    case RemovalCause::too_dense:
       return "too dense";
-    case RetireCause::too_thin:
+    case RemovalCause::too_thin:
       return "too thin";
   }
   return "";
 }
 
-std::optional<RetireCause> cause_to_retire(const Method& method, const Particles& p,
-                                           std::size_t slot, double time) {
+std::optional<RemovalCause> cause_to_remove(const Method& method, const Particles& p,
+                                            std::size_t slot, double time) {
   const Vec place = p.position(slot);
   const auto unfit = cause_to_exclude(method, place, p.velocity(slot), p.density_excess[slot]);
   if (unfit) return unfit;
   if (!method.keeps(place)) {
-    return place.y() >= method.over_from() ? RetireCause::overtopped : RetireCause::leaked;
+    return place.y() >= method.over_from() ? RemovalCause::overtopped : RemovalCause::leaked;
   }
-  if (method.in_solid && method.in_solid(place, time)) return RetireCause::leaked;
+  if (method.in_solid && method.in_solid(place, time)) return RemovalCause::leaked;
   return {};
 }
 
-Retired record_of(const Particles& p, std::size_t slot, RetireCause cause, std::uint64_t step,
-                  double time) {
-  Retired record;
+RemovedParticle record_of(const Particles& p, std::size_t slot, RemovalCause cause,
+                          std::uint64_t step, double time) {
+  RemovedParticle record;
   record.id = p.id[slot];
   record.cause = cause;
   record.step = step;
@@ -70,12 +70,12 @@ Retired record_of(const Particles& p, std::size_t slot, RetireCause cause, std::
   return record;
 }
 
-Energy energy_of(const Method& method, const Retired& retired) {
+Energy energy_of(const Method& method, const RemovedParticle& removed) {
   const double mass = method.particle_mass();
-  const double compression = retired.density_excess / method.reference_density;
+  const double compression = removed.density_excess / method.reference_density;
   Energy energy;
-  energy.kinetic = 0.5 * mass * (retired.vx * retired.vx + retired.vy * retired.vy);
-  energy.potential = -mass * method.gravity.dot(Vec(retired.x, retired.y));
+  energy.kinetic = 0.5 * mass * (removed.vx * removed.vx + removed.vy * removed.vy);
+  energy.potential = -mass * method.gravity.dot(Vec(removed.x, removed.y));
   // Below no density at all there is no such integral.
   if (compression > -1.0) {
     energy.internal = mass * method.sound_speed * method.sound_speed *
@@ -84,11 +84,11 @@ Energy energy_of(const Method& method, const Retired& retired) {
   return energy;
 }
 
-void Departed::add(const Method& method, const Retired& retired) {
+void Departed::add(const Method& method, const RemovedParticle& removed) {
   ++count;
   mass += method.particle_mass();
-  momentum += method.particle_mass() * Vec(retired.vx, retired.vy);
-  energy.merge(energy_of(method, retired));
+  momentum += method.particle_mass() * Vec(removed.vx, removed.vy);
+  energy.merge(energy_of(method, removed));
 }
 
 void Departed::merge(const Departed& other) {

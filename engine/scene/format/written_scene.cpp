@@ -1,4 +1,4 @@
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/format/written_scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -86,13 +86,13 @@ Box domain_of_flight(const Scene& scene) {
 
 }  // namespace
 
-Document::Document(std::optional<Scheme> scheme) {
+WrittenScene::WrittenScene(std::optional<Scheme> scheme) {
   scene.numerics.scheme = scheme;
   scene.method = method_of(scheme);
   scene.method.reference_density = kWaterDensity;
 }
 
-Document::Document(const Scene& from)
+WrittenScene::WrittenScene(const Scene& from)
     : scene(from),
       domain(from.method.domain),
       sound_speed(from.method.sound_speed),
@@ -125,14 +125,14 @@ Box default_domain(const Scene& scene) {
   return scene.tank ? domain_of_tank(scene) : domain_of_flight(scene);
 }
 
-Scene resolve(const Document& document) {
-  Scene scene = document.scene;
+Scene resolve(const WrittenScene& written) {
+  Scene scene = written.scene;
   Method& method = scene.method;
-  method.gravity = document.gravity.value_or(Vec::Zero());
+  method.gravity = written.gravity.value_or(Vec::Zero());
   method.smoothing_length =
-      document.smoothing_ratio.value_or(default_smoothing_ratio(method.kernel)) * method.spacing;
-  method.sound_speed = document.sound_speed ? *document.sound_speed : default_sound_speed(scene);
-  method.domain = document.domain ? *document.domain : default_domain(scene);
+      written.smoothing_ratio.value_or(default_smoothing_ratio(method.kernel)) * method.spacing;
+  method.sound_speed = written.sound_speed ? *written.sound_speed : default_sound_speed(scene);
+  method.domain = written.domain ? *written.domain : default_domain(scene);
   // Nothing passes over a lid: what leaves a closed tank has leaked, wherever.
   if (scene.tank && scene.tank->open_top) {
     method.wall_top = scene.tank->height;
@@ -142,7 +142,7 @@ Scene resolve(const Document& document) {
   }
   if (scene.gate && scene.tank) {
     if (scene.gate->height == 0.0) scene.gate->height = scene.tank->height;
-    method.lifted_wall = LiftedWall{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
+    method.gate = GateMotion{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
   }
   for (Sensor& sensor : scene.sensors) {
     const bool wants_length = sensor.kind == SensorKind::pressure;

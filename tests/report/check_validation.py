@@ -1,6 +1,6 @@
 """Holds two reports of `sluice report --json` against what the two schemes must show.
 
-Usage: check_evidence.py PAPER.json RECOMMENDED.json --peaks PAPER.json... --errors RECOMMENDED.json...
+Usage: check_validation.py PAPER.json RECOMMENDED.json --peaks PAPER.json... --errors RECOMMENDED.json...
 with displaced runs of the two schemes behind the options. Prints a line per requirement; exit status 1 when one is not
 met or cannot be told.
 """
@@ -46,14 +46,14 @@ class Checks:
 
 def leaked_share(report):
     outcome = report.get("outcome")
-    leaked = path(outcome, "retired", "leaked")
+    leaked = path(outcome, "removed", "leaked")
     if leaked is None:
         return None
-    return leaked / (outcome["particles"] + leaked + outcome["retired"]["overtopped"])
+    return leaked / (outcome["particles"] + leaked + outcome["removed"]["overtopped"])
 
 
 def sensors_of(report):
-    return {one["reference"]: one for one in (report.get("evidence") or {}).get("pressures", [])}
+    return {one["reference"]: one for one in (report.get("comparison") or {}).get("pressures", [])}
 
 
 def first_peak(report):
@@ -74,7 +74,7 @@ def check_first_peak(checks, paper, displaced):
 
 
 def check_paper(checks, report):
-    evidence = report.get("evidence") or {}
+    comparison = report.get("comparison") or {}
     sensors = sensors_of(report)
     checks.between("paper's scheme: state completed", float(path(report, "outcome", "state") == "completed"), 1, 1)
     for name in ("P1", "P2", "P3", "P4"):
@@ -83,16 +83,16 @@ def check_paper(checks, report):
         verdict = checks.below if name == "P4" else checks.above
         verdict(f"paper's scheme: plateau at {name} against the experiment's, P", simulated, measured)
     checks.between("paper's scheme: second rise at P1, T", path(sensors.get("P1"), "simulation", "second_rise", "time"), 6.4, 6.9)
-    checks.between("paper's scheme: mean relative L2 of P1-P4", evidence.get("mean_relative_l2"), 0, 0.36)
+    checks.between("paper's scheme: mean relative L2 of P1-P4", comparison.get("mean_relative_l2"), 0, 0.36)
     checks.between("paper's scheme: share of particles that leaked", leaked_share(report), 0, 0.001)
 
 
 def error_of(report):
-    return (report.get("evidence") or {}).get("mean_relative_l2")
+    return (report.get("comparison") or {}).get("mean_relative_l2")
 
 
 def not_shifted(report):
-    return (report.get("evidence") or {}).get("mean_relative_l2_not_shifted")
+    return (report.get("comparison") or {}).get("mean_relative_l2_not_shifted")
 
 
 def check_recommended(checks, report, displaced):
@@ -105,7 +105,7 @@ def check_recommended(checks, report, displaced):
     median = None if None in errors else statistics.median(errors)
     checks.between(f"recommended: the same, median of {len(errors)} displaced runs", median, 0, 0.20)
     checks.between("recommended: first peak at P1, P", first_peak(report), 2.56, 4.46)
-    checks.between("recommended: particles that leaked", path(report, "outcome", "retired", "leaked"), 0, 0)
+    checks.between("recommended: particles that leaked", path(report, "outcome", "removed", "leaked"), 0, 0)
 
 
 def load(name):

@@ -1,10 +1,10 @@
-#include "engine/scene/forecast/work.hpp"
+#include "engine/scene/forecast/workload.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/scene/filling/walls.hpp"
-#include "engine/scene/format/document.hpp"
+#include "engine/scene/format/written_scene.hpp"
 #include "engine/scene/geometry/geometry.hpp"
 
 namespace sluice {

@@ -1,4 +1,4 @@
-#include "engine/report/series_evidence.hpp"
+#include "engine/report/series_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,21 +53,22 @@ std::optional<Peak> highest_within(const Curve& curve, double from, double to) {
   return highest_of(part.time, part.value);
 }
 
-CurveEvidence weigh(const ReferenceCurve& expected, Curve simulated) {
-  CurveEvidence evidence;
+CurveComparison weigh(const ReferenceCurve& expected, Curve simulated) {
+  CurveComparison comparison;
   const Intervals intervals(expected.time);
   const auto averages = interval_averages(simulated, intervals);
   const Window all{expected.time.front() - 1.0, expected.time.back() + 1.0};
-  evidence.relative_l2 = relative_l2(intervals, averages, expected.value, all);
-  evidence.rms_difference = rms_difference(intervals, averages, expected.value, all);
-  evidence.expected_peak = highest_of(expected.time, expected.value);
-  evidence.simulated_peak = highest_within(simulated, expected.time.front(), expected.time.back());
-  evidence.simulated = std::move(simulated);
-  return evidence;
+  comparison.relative_l2 = relative_l2(intervals, averages, expected.value, all);
+  comparison.rms_difference = rms_difference(intervals, averages, expected.value, all);
+  comparison.expected_peak = highest_of(expected.time, expected.value);
+  comparison.simulated_peak =
+      highest_within(simulated, expected.time.front(), expected.time.back());
+  comparison.simulated = std::move(simulated);
+  return comparison;
 }
 
-CurveEvidence compare_curve(const Scene& scene, const Series* series,
-                            const ReferenceCurve& expected, ReferenceUnits units, double tau) {
+CurveComparison compare_curve(const Scene& scene, const Series* series,
+                              const ReferenceCurve& expected, ReferenceUnits units, double tau) {
   Curve simulated;
   if (series != nullptr) {
     simulated = curve_of(*series, tau);
@@ -75,33 +76,33 @@ CurveEvidence compare_curve(const Scene& scene, const Series* series,
       divide(simulated, dimensionless_divisors(scene, *series));
     }
   }
-  CurveEvidence evidence = weigh(expected, std::move(simulated));
-  evidence.sensor = expected.sensor;
-  evidence.expected = expected;
+  CurveComparison comparison = weigh(expected, std::move(simulated));
+  comparison.sensor = expected.sensor;
+  comparison.expected = expected;
   if (series != nullptr) {
-    evidence.kind = series->kind;
-    evidence.unit = units == ReferenceUnits::dimensionless ? "1" : series->columns.front().unit;
+    comparison.kind = series->kind;
+    comparison.unit = units == ReferenceUnits::dimensionless ? "1" : series->columns.front().unit;
   }
-  return evidence;
+  return comparison;
 }
 
 }  // namespace
 
-SeriesEvidence compare_series(const Scene& scene, const std::vector<Series>& series,
-                              const SceneReference& reference, double tau) {
-  SeriesEvidence evidence{reference.title, reference.citation, reference.units, tau, {}, {}};
+SeriesComparison compare_series(const Scene& scene, const std::vector<Series>& series,
+                                const SceneReference& reference, double tau) {
+  SeriesComparison comparison{reference.title, reference.citation, reference.units, tau, {}, {}};
   double sum = 0.0;
   bool complete = !reference.curves.empty();
   for (const ReferenceCurve& expected : reference.curves) {
     const auto found = std::find_if(series.begin(), series.end(),
                                     [&](const Series& one) { return one.name == expected.sensor; });
-    evidence.curves.push_back(compare_curve(scene, found == series.end() ? nullptr : &*found,
-                                            expected, reference.units, tau));
-    complete = complete && evidence.curves.back().relative_l2;
-    sum += evidence.curves.back().relative_l2.value_or(0.0);
+    comparison.curves.push_back(compare_curve(scene, found == series.end() ? nullptr : &*found,
+                                              expected, reference.units, tau));
+    complete = complete && comparison.curves.back().relative_l2;
+    sum += comparison.curves.back().relative_l2.value_or(0.0);
   }
-  if (complete) evidence.mean_relative_l2 = sum / static_cast<double>(evidence.curves.size());
-  return evidence;
+  if (complete) comparison.mean_relative_l2 = sum / static_cast<double>(comparison.curves.size());
+  return comparison;
 }
 
 }  // namespace sluice

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "engine/store/disk/publish.hpp"
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 #include "engine/store/hdf5/hdf5_file.hpp"
 #include "tests/store/fixtures.hpp"
 
@@ -28,8 +28,8 @@ TEST(FrameFile, FarFromZeroKeepsParticlesApartToAThousandthOfTheirDistance) {
   for (const double start : {0.0, 1e5, -3e8}) {
     const TemporaryFolder folder;
     const SolverState state = row_from(start, 50);
-    write_frame(folder / "f.h5", make_frame(state, Method{}));
-    const Frame frame = read_frame(folder / "f.h5");
+    write_snapshot(folder / "f.h5", make_snapshot(state, Method{}));
+    const Snapshot frame = read_snapshot(folder / "f.h5");
     std::set<double> places;
     for (std::size_t i = 0; i < frame.x.size(); ++i) {
       EXPECT_NEAR(frame.position(i).x(), state.particles.x[i], 1e-5 + 1e-15 * std::abs(start));
@@ -41,8 +41,8 @@ TEST(FrameFile, FarFromZeroKeepsParticlesApartToAThousandthOfTheirDistance) {
 }
 
 TEST(FrameFile, NearZeroHasItsOriginThere) {
-  EXPECT_EQ(make_frame(row_from(0.0, 50), Method{}).origin_x, 0.0);
-  EXPECT_EQ(make_frame(row_from(-0.2, 50), Method{}).origin_x, 0.0);
+  EXPECT_EQ(make_snapshot(row_from(0.0, 50), Method{}).origin_x, 0.0);
+  EXPECT_EQ(make_snapshot(row_from(-0.2, 50), Method{}).origin_x, 0.0);
 }
 
 TEST(FrameFile, OfTheFirstVersionIsReadWithPositionsFromZero) {
@@ -69,7 +69,7 @@ TEST(FrameFile, OfTheFirstVersionIsReadWithPositionsFromZero) {
   writer.write("/particles/id", std::span<const std::uint64_t>(ids), {2});
   label("/particles/id", "1");
   publish(folder / "f.h5", writer.image(), Durability::process_crash);
-  const Frame frame = read_frame(folder / "f.h5");
+  const Snapshot frame = read_snapshot(folder / "f.h5");
   EXPECT_EQ(frame.step, 7U);
   EXPECT_EQ(frame.position(1).x(), 0.5);
 }

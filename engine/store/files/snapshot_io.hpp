@@ -17,7 +17,7 @@ namespace sluice {
 /// A particle snapshot for pictures, in single precision: nothing goes on from it. Every field has
 /// one entry per particle. Positions are relative to an origin near the fluid, because single
 /// precision tells no particles apart far from zero.
-struct Frame {
+struct Snapshot {
   std::uint64_t step = 0;
   double time = 0.0;              ///< s
   std::vector<float> x, y;        ///< m, from the origin
@@ -31,24 +31,24 @@ struct Frame {
   [[nodiscard]] Vec position(std::size_t i) const {
     return {origin_x + static_cast<double>(x[i]), origin_y + static_cast<double>(y[i])};
   }
-  friend bool operator==(const Frame&, const Frame&) = default;
+  friend bool operator==(const Snapshot&, const Snapshot&) = default;
 };
 
 /// `frame-<index>.h5`, the index in 6 digits.
-[[nodiscard]] std::string frame_name(std::uint64_t index);
+[[nodiscard]] std::string snapshot_name(std::uint64_t index);
 
 /// The snapshot of a state; pressure by eq. 3. In each direction the origin is zero, or the middle
 /// of the particles where that is farther away than they are spread.
-[[nodiscard]] Frame make_frame(const SolverState& state, const Method& method);
+[[nodiscard]] Snapshot make_snapshot(const SolverState& state, const Method& method);
 
 /// Publishes it. Survives a power cut by default, because a checkpoint that counts the frame as
 /// written does. Throws StorageError: invalid_content when fields differ in length, and what
 /// publish throws.
-void write_frame(const std::filesystem::path& path, const Frame& frame,
-                 Durability durability = Durability::power_cut,
-                 FileSystem& system = FileSystem::real());
+void write_snapshot(const std::filesystem::path& path, const Snapshot& frame,
+                    Durability durability = Durability::power_cut,
+                    FileSystem& system = FileSystem::real());
 
 /// Throws StorageError: corrupt, unsupported_version, not_ours, io.
-[[nodiscard]] Frame read_frame(const std::filesystem::path& path);
+[[nodiscard]] Snapshot read_snapshot(const std::filesystem::path& path);
 
 }  // namespace sluice

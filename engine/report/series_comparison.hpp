@@ -11,7 +11,7 @@
 namespace sluice {
 
 /// One sensor against the curve that the scene gives for it.
-struct CurveEvidence {
+struct CurveComparison {
   std::string sensor;
   std::string kind;
   std::string unit;                      ///< of the values; "1" when dimensionless
@@ -24,12 +24,12 @@ struct CurveEvidence {
 };
 
 /// A run against the curves of its own scene.
-struct SeriesEvidence {
+struct SeriesComparison {
   std::string title;
   std::string citation;
   ReferenceUnits units = ReferenceUnits::si;
   double tau = 0.0;  ///< s
-  std::vector<CurveEvidence> curves;
+  std::vector<CurveComparison> curves;
   std::optional<double> mean_relative_l2;  ///< over all curves; absent when one of them has none
 };
 
@@ -37,7 +37,7 @@ struct SeriesEvidence {
 /// averaged over the curve's intervals; nothing is shifted. Pressures are filtered with `tau` (s).
 /// Dry pressures and levels count as 0; other dry samples are left out. A sensor without samples
 /// has no simulated curve and no measures.
-[[nodiscard]] SeriesEvidence compare_series(const Scene& scene, const std::vector<Series>& series,
-                                            const SceneReference& reference, double tau);
+[[nodiscard]] SeriesComparison compare_series(const Scene& scene, const std::vector<Series>& series,
+                                              const SceneReference& reference, double tau);
 
 }  // namespace sluice

@@ -1,4 +1,4 @@
-#include "engine/store/files/frame_io.hpp"
+#include "engine/store/files/snapshot_io.hpp"
 
 #include <fmt/format.h>
 
@@ -30,29 +30,29 @@ double origin_of(const std::vector<double>& positions) {
   return low <= high && std::abs(middle) > high - low ? middle : 0.0;
 }
 
-Bytes encode(const Frame& frame) {
+Bytes encode(const Snapshot& frame) {
   WriteArchive archive(frame.x.size() * (5 * sizeof(float) + sizeof(std::uint64_t)));
-  walk_format(archive, kFrameFormat);
-  walk_frame(archive, frame);
+  walk_format(archive, kSnapshotFormat);
+  walk_snapshot(archive, frame);
   return archive.image();
 }
 
-Frame decode(ByteSpan image) {
+Snapshot decode(ByteSpan image) {
   ReadArchive archive(image);
-  Frame frame;
-  const std::uint64_t version = walk_format(archive, kFrameFormat);
-  walk_frame(archive, frame, version);
+  Snapshot frame;
+  const std::uint64_t version = walk_format(archive, kSnapshotFormat);
+  walk_snapshot(archive, frame, version);
   archive.require_all_met();
   return frame;
 }
 
 }  // namespace
 
-std::string frame_name(std::uint64_t index) { return fmt::format("frame-{:06}.h5", index); }
+std::string snapshot_name(std::uint64_t index) { return fmt::format("frame-{:06}.h5", index); }
 
-Frame make_frame(const SolverState& state, const Method& method) {
+Snapshot make_snapshot(const SolverState& state, const Method& method) {
   const Particles& particles = state.particles;
-  Frame frame;
+  Snapshot frame;
   frame.step = state.step;
   frame.time = state.time;
   frame.origin_x = origin_of(particles.x);
@@ -69,13 +69,13 @@ Frame make_frame(const SolverState& state, const Method& method) {
   return frame;
 }
 
-void write_frame(const std::filesystem::path& path, const Frame& frame, Durability durability,
-                 FileSystem& system) {
+void write_snapshot(const std::filesystem::path& path, const Snapshot& frame, Durability durability,
+                    FileSystem& system) {
   const Bytes image = naming(path, [&] { return encode(frame); });
   publish(path, image, durability, system);
 }
 
-Frame read_frame(const std::filesystem::path& path) {
+Snapshot read_snapshot(const std::filesystem::path& path) {
   const Bytes image = read_verified(path);
   return naming(path, [&] { return decode(image); });
 }

@@ -10,16 +10,16 @@ namespace sluice {
 
 /// Why the particle in a slot is no part of the fluid any more at time t, if so: it is what the
 /// scheme cannot hold, or where the run does not go on, or in a solid.
-[[nodiscard]] std::optional<RetireCause> cause_to_retire(const Method& method,
-                                                         const Particles& particles,
-                                                         std::size_t slot, double time);
+[[nodiscard]] std::optional<RemovalCause> cause_to_remove(const Method& method,
+                                                          const Particles& particles,
+                                                          std::size_t slot, double time);
 
 /// What is kept of the particle. Of what is not finite: the place at the last sort, or zero.
-[[nodiscard]] Retired record_of(const Particles& particles, std::size_t slot, RetireCause cause,
-                                std::uint64_t step, double time);
+[[nodiscard]] RemovedParticle record_of(const Particles& particles, std::size_t slot,
+                                        RemovalCause cause, std::uint64_t step, double time);
 
 /// Energy that a particle took along, J/m.
-[[nodiscard]] Energy energy_of(const Method& method, const Retired& retired);
+[[nodiscard]] Energy energy_of(const Method& method, const RemovedParticle& removed);
 
 /// All that particles of one kind took along when they left the sums.
 struct Departed {
@@ -28,7 +28,7 @@ struct Departed {
   Vec momentum = Vec::Zero();  ///< kg/s
   Energy energy;
 
-  void add(const Method& method, const Retired& retired);
+  void add(const Method& method, const RemovedParticle& removed);
   void merge(const Departed& other);
 };
 

@@ -39,9 +39,9 @@ class SuiteStopped : public std::runtime_error {
 };
 
 /// Runs scenes of the suite as ordinary jobs, each in a folder of its own, with one scheme.
-class StabilityBench {
+class CaseRunner {
  public:
-  StabilityBench(std::filesystem::path folder, SuiteForm form, nlohmann::ordered_json scheme)
+  CaseRunner(std::filesystem::path folder, SuiteForm form, nlohmann::ordered_json scheme)
       : folder_(std::move(folder)), form_(form), scheme_(std::move(scheme)) {}
 
   /// Changes the particles of a scene before its first step: what a scene cannot say.

@@ -8,33 +8,33 @@
 namespace sluice {
 
 template <typename T>
-struct TracksView {
+struct ListPathsView {
   const T* x = nullptr;
   const T* y = nullptr;
   const T* u = nullptr;
   const T* v = nullptr;
 };
 
-/// What the lists allow: for `lifetime` a particle may be off its track by `least` and `per_speed`
+/// What the lists allow: for `lifetime` a particle may be off its path by `least` and `per_speed`
 /// times its speed, which is taken as |u| + |v|. Units h and c.
 template <typename T>
-struct Leeway {
+struct Skin {
   T lifetime{};
   T least{};
   T per_speed{};
 };
 
 /// How long pair lists serve changes no bit of a result, for what is beyond the support adds zero.
-/// Longer lists serve longer and hold more pairs that are none: a particle may be off its track by
+/// Longer lists serve longer and hold more pairs that are none: a particle may be off its path by
 /// this much and a twentieth of its way along it. Twice that would spare a twelfth of the lists
 /// and sum 3 % more pairs (tests/bench/README.md).
 template <typename T>
-inline constexpr Leeway<T> kLeeway{T{15}, static_cast<T>(0.05), static_cast<T>(0.05 * 15.0)};
+inline constexpr Skin<T> kSkin{T{15}, static_cast<T>(0.05), static_cast<T>(0.05 * 15.0)};
 
-/// Speed of a track along one axis for a particle of this speed, in c. A faster particle, or one
-/// whose speed is not a number, leaves its track.
+/// Speed of a path along one axis for a particle of this speed, in c. A faster particle, or one
+/// whose speed is not a number, leaves its path.
 template <typename T>
-[[nodiscard]] inline T track_speed(T speed) {
+[[nodiscard]] inline T path_speed(T speed) {
   return std::min(std::max(T{-1}, speed), T{1});
 }
 
@@ -42,7 +42,7 @@ template <typename T>
 /// dimensionless as in PairArrays. Lists hold while particles keep to these straight lines: what
 /// moves together needs no new list however fast it is.
 template <typename T>
-struct Tracks {
+struct ListPaths {
   AlignedArray<T> x, y;  ///< X
   AlignedArray<T> u, v;  ///< U
   double age = 0.0;      ///< of the lists, h/c
@@ -55,15 +55,15 @@ struct Tracks {
     for (std::size_t s = begin; s < end; ++s) {
       x[s] = now.x[s];
       y[s] = now.y[s];
-      u[s] = track_speed(now.u[s]);
-      v[s] = track_speed(now.v[s]);
+      u[s] = path_speed(now.u[s]);
+      v[s] = path_speed(now.v[s]);
     }
   }
-  [[nodiscard]] TracksView<T> view() const { return {x.data(), y.data(), u.data(), v.data()}; }
+  [[nodiscard]] ListPathsView<T> view() const { return {x.data(), y.data(), u.data(), v.data()}; }
   [[nodiscard]] std::size_t bytes() const { return x.bytes() + y.bytes() + u.bytes() + v.bytes(); }
 };
 
-/// Farther from its tile's origin than this, in h, are only empty slots.
+/// Farther from its origin_cell's origin than this, in h, are only empty slots.
 inline constexpr double kNowhere = 1e7;
 
 /// A coordinate in h that no kernel reaches, for a slot that holds nothing; no two slots are near

@@ -1,4 +1,4 @@
-#include "engine/sph/stability/free_sheet.hpp"
+#include "engine/sph/stability/surface_wave_limit.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine/verify/stability_bench.hpp"
+#include "engine/verify/case_runner.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ class WarningKeeper final : public Reporter {
 };
 
 /// The state at step 0 with other velocities, as the checkpoint that the job goes on from.
-Checkpoint prepared(const Scene& scene, const StabilityBench::Prepare& prepare) {
+Checkpoint prepared(const Scene& scene, const CaseRunner::Prepare& prepare) {
   Checkpoint start = Simulation(scene, {}).checkpoint();
   Particles& particles = start.solver.particles;
   prepare(particles);
@@ -58,7 +58,7 @@ const Series& CaseRun::sensor(std::string_view name) const {
   throw std::logic_error(fmt::format("the case has no sensor {}", name));
 }
 
-CaseRun StabilityBench::run(const Json& scene, StabilityCheck stability, const Prepare& prepare) {
+CaseRun CaseRunner::run(const Json& scene, StabilityCheck stability, const Prepare& prepare) {
   CaseRun run;
   const Json whole = scene.contains("numerics") ? scene : with_scheme(scene, scheme_);
   const std::string text = whole.dump(2) + "\n";
@@ -80,7 +80,8 @@ CaseRun StabilityBench::run(const Json& scene, StabilityCheck stability, const P
   RunOptions options;
   run.outcome = run_job(folder, run.scene, options, reporter);
   if (run.outcome.exit_code == ExitCode::checkpointed) throw SuiteStopped();
-  const Expectation expected{scene_hash(identity_text(run.scene)), run.scene.method.integrator};
+  const CheckpointIdentity expected{scene_hash(identity_text(run.scene)),
+                                    run.scene.method.integrator};
   if (auto restored = folder.newest_checkpoint(expected)) {
     run.checkpoint = name + "/" + restored->path.filename().string();
     run.last = std::move(restored->checkpoint);

@@ -1,4 +1,4 @@
-#include "engine/scene/geometry/open_share.hpp"
+#include "engine/scene/geometry/open_fraction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using testing::parsed;
 constexpr double kExact = 0.005;
 
 double share(const nlohmann::json& scene, const Vec& point, double h, double time = 0.0) {
-  return OpenShare(parsed(scene), point, h).at(time);
+  return OpenFraction(parsed(scene), point, h).at(time);
 }
 
 nlohmann::json scene_with(const char* kernel) {
@@ -43,7 +43,7 @@ double above_floor(KernelKind kernel, double depth) {
   return open / whole;
 }
 
-TEST(OpenShare, IsOneInTheOpenAHalfOnAWallAndAQuarterInACorner) {
+TEST(OpenFraction, IsOneInTheOpenAHalfOnAWallAndAQuarterInACorner) {
   for (const char* kernel : {"truncated_gaussian", "wendland_c2"}) {
     const nlohmann::json scene = scene_with(kernel);
     EXPECT_NEAR(share(scene, {1.0, 0.5}, 0.05), 1.0, 1e-12);
@@ -53,7 +53,7 @@ TEST(OpenShare, IsOneInTheOpenAHalfOnAWallAndAQuarterInACorner) {
   }
 }
 
-TEST(OpenShare, IsTheIntegralOfTheKernelAboveAFloorNearby) {
+TEST(OpenFraction, IsTheIntegralOfTheKernelAboveAFloorNearby) {
   for (const auto& [word, kernel] :
        {std::pair{"truncated_gaussian", KernelKind::truncated_gaussian},
         {"wendland_c2", KernelKind::wendland_c2}}) {
@@ -65,12 +65,12 @@ TEST(OpenShare, IsTheIntegralOfTheKernelAboveAFloorNearby) {
   }
 }
 
-TEST(OpenShare, DoesNotDependOnHowFarTheSumReachesIntoAWall) {
+TEST(OpenFraction, DoesNotDependOnHowFarTheSumReachesIntoAWall) {
   // Ten smoothing lengths of the scene: far beyond its layers of dummy particles.
   EXPECT_NEAR(share(base_scene(), {2.0, 0.5}, 0.1), 0.5, 1e-12);
 }
 
-TEST(OpenShare, AnOpenTankHasNoLid) {
+TEST(OpenFraction, AnOpenTankHasNoLid) {
   nlohmann::json scene = base_scene();
   scene["tank"]["open_top"] = true;
   EXPECT_NEAR(share(scene, {1.0, 1.0}, 0.05), 1.0, 1e-12);
@@ -79,7 +79,7 @@ TEST(OpenShare, AnOpenTankHasNoLid) {
   EXPECT_NEAR(share(scene, {1.0, 1.0}, 0.05), 0.5, 1e-12);
 }
 
-TEST(OpenShare, ObstaclesAreNotOpen) {
+TEST(OpenFraction, ObstaclesAreNotOpen) {
   nlohmann::json scene = base_scene();
   scene["obstacles"] = {{{"shape", "rectangle"}, {"corner", {1.2, 0}}, {"size", {0.4, 0.4}}}};
   EXPECT_NEAR(share(scene, {1.2, 0.2}, 0.05), 0.5, kExact);
@@ -87,16 +87,16 @@ TEST(OpenShare, ObstaclesAreNotOpen) {
   EXPECT_NEAR(share(scene, {1.4, 0.2}, 0.05), 0.0, 1e-12);
 }
 
-TEST(OpenShare, WithoutATankAllIsOpen) {
+TEST(OpenFraction, WithoutATankAllIsOpen) {
   const nlohmann::json drop =
       testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 0.5}});
   EXPECT_NEAR(share(drop, {-0.5, -0.5}, 0.05), 1.0, 1e-12);
 }
 
-TEST(OpenShare, GrowsAsTheGateIsLifted) {
+TEST(OpenFraction, GrowsAsTheGateIsLifted) {
   nlohmann::json scene = base_scene();
   scene["gate"] = {{"x", 1.0}, {"height", 0.5}, {"speed", 2.0}};
-  const OpenShare beside(parsed(scene), {1.0, 0.2}, 0.05);
+  const OpenFraction beside(parsed(scene), {1.0, 0.2}, 0.05);
   // The body is as thick as the support: it fills the right half until its edge comes by.
   EXPECT_NEAR(beside.at(0.0), 0.5, kExact);
   EXPECT_NEAR(beside.at(0.1), 0.75, 2 * kExact);

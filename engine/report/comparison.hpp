@@ -32,7 +32,7 @@ struct PressureMeasures {
   std::optional<Rise> second_rise;
 };
 
-struct PressureEvidence {
+struct PressureComparison {
   std::string sensor;                  ///< the scene's name for it
   double height = 0.0;                 ///< above the floor, m
   double smoothing_length = 0.0;       ///< of the sensor, m
@@ -49,14 +49,14 @@ struct PressureEvidence {
   [[nodiscard]] std::optional<double> place_in_band() const;
 };
 
-struct LevelEvidence {
+struct LevelComparison {
   std::string sensor;
   std::string reference;
   std::optional<double> rms_difference;  ///< h/h0
   Curve simulated;                       ///< h/h0 over T, not shifted
 };
 
-struct FrontEvidence {
+struct FrontComparison {
   std::string sensor;
   std::optional<double> rms_difference;  ///< (w - w0)/h0
   std::optional<double> delay;  ///< T that the simulation comes later at the same place, mean
@@ -64,16 +64,16 @@ struct FrontEvidence {
 };
 
 /// A run against an experiment.
-struct Evidence {
+struct Comparison {
   const Reference* reference = nullptr;
   double tau = 0.0;             ///< s
   double time_unit = 0.0;       ///< s per unit of T: sqrt(h0/g)
   std::optional<double> shift;  ///< T added to all pressure times; absent: nothing arrived
-  std::vector<PressureEvidence> pressures;
+  std::vector<PressureComparison> pressures;
   std::optional<double> mean_relative_l2;  ///< over all of the experiment's sensors, shifted
   std::optional<double> mean_relative_l2_not_shifted;
-  std::vector<LevelEvidence> levels;
-  std::optional<FrontEvidence> front;
+  std::vector<LevelComparison> levels;
+  std::optional<FrontComparison> front;
 };
 
 /// Pressure series as P over T, after the time filter of eq. 12 with `tau` (s), in which dry
@@ -84,7 +84,7 @@ struct Evidence {
 /// time origins of experiment and simulation differ, so all pressures are shifted alike, such that
 /// the first sensor arrives as in the experiment; levels and front are not shifted. Sensors belong
 /// together when they are within 2 % of h0 in x and 1 % in y.
-[[nodiscard]] Evidence compare(const Scene& scene, const std::vector<Series>& series,
-                               const Reference& reference, double tau = kComparisonTau);
+[[nodiscard]] Comparison compare(const Scene& scene, const std::vector<Series>& series,
+                                 const Reference& reference, double tau = kComparisonTau);
 
 }  // namespace sluice

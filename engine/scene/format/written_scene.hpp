@@ -8,7 +8,7 @@ namespace sluice {
 
 /// A scene as it is written: beside the scene's own values, those from which others are derived
 /// when they are left out. `scene.method` holds no derived value until resolve() fills it in.
-struct Document {
+struct WrittenScene {
   Scene scene;
   std::optional<Vec> gravity;             ///< m/s^2
   std::optional<Box> domain;              ///< m
@@ -16,9 +16,9 @@ struct Document {
   std::optional<double> smoothing_ratio;  ///< h/dx
 
   /// With the numerics of this scheme.
-  explicit Document(std::optional<Scheme> scheme = Scheme::recommended);
+  explicit WrittenScene(std::optional<Scheme> scheme = Scheme::recommended);
   /// The document with everything filled in that resolves to `scene`.
-  explicit Document(const Scene& scene);
+  explicit WrittenScene(const Scene& scene);
 };
 
 /// h/dx where a scene gives none: three layers of cells (3 dx) then hold the kernel's support, 3h
@@ -40,6 +40,6 @@ struct Document {
 
 /// Fills in what `document` left to be derived and returns the scene. Needs every key it has to be
 /// in its range and a fluid, and gravity or a sound speed.
-[[nodiscard]] Scene resolve(const Document& document);
+[[nodiscard]] Scene resolve(const WrittenScene& written);
 
 }  // namespace sluice

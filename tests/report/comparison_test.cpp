@@ -1,4 +1,4 @@
-#include "engine/report/evidence.hpp"
+#include "engine/report/comparison.hpp"
 
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ Reference made_up_reference() {
           {wall},    level_times, {level}, Curve{{0.0, 1.0, 2.0}, {0.0, 1.5, 3.0}}};
 }
 
-Evidence compare_with_delay(double delay, double factor) {
+Comparison compare_with_delay(double delay, double factor) {
   const Scene scene = half_size_scene();
   static const Reference reference = made_up_reference();
   const auto late = [&](double t) {
@@ -103,28 +103,28 @@ Evidence compare_with_delay(double delay, double factor) {
                  reference, 2e-3 * unit_of_time(scene));
 }
 
-TEST(Evidence, OfARunThatEqualsTheExperimentIsNoError) {
-  const Evidence evidence = compare_with_delay(0.0, 1.0);
-  ASSERT_EQ(evidence.pressures.size(), 1u);
-  EXPECT_EQ(evidence.pressures[0].sensor, "low");
-  EXPECT_EQ(evidence.pressures[0].reference, "P1");
-  EXPECT_NEAR(*evidence.mean_relative_l2, 0.0, 1e-3);
-  EXPECT_NEAR(*evidence.shift, 0.0, 1e-3);
+TEST(Comparison, OfARunThatEqualsTheExperimentIsNoError) {
+  const Comparison comparison = compare_with_delay(0.0, 1.0);
+  ASSERT_EQ(comparison.pressures.size(), 1u);
+  EXPECT_EQ(comparison.pressures[0].sensor, "low");
+  EXPECT_EQ(comparison.pressures[0].reference, "P1");
+  EXPECT_NEAR(*comparison.mean_relative_l2, 0.0, 1e-3);
+  EXPECT_NEAR(*comparison.shift, 0.0, 1e-3);
 }
 
-TEST(Evidence, IsTheSameForARunThatIsLateAndReportsTheShift) {
-  const Evidence evidence = compare_with_delay(0.3, 1.0);
-  EXPECT_NEAR(*evidence.shift, -0.3, 1e-3);
-  EXPECT_NEAR(*evidence.mean_relative_l2, 0.0, 1e-3);
-  EXPECT_NEAR(*evidence.pressures[0].simulation.arrival, 2.505, 1e-12);
+TEST(Comparison, IsTheSameForARunThatIsLateAndReportsTheShift) {
+  const Comparison comparison = compare_with_delay(0.3, 1.0);
+  EXPECT_NEAR(*comparison.shift, -0.3, 1e-3);
+  EXPECT_NEAR(*comparison.mean_relative_l2, 0.0, 1e-3);
+  EXPECT_NEAR(*comparison.pressures[0].simulation.arrival, 2.505, 1e-12);
   // The ramp's upper knee averages to 1.5 - 0.05 * 0.0625 / 2 / 0.1 over [6.35, 6.45].
-  EXPECT_NEAR(evidence.pressures[0].simulation.second_rise->time,
+  EXPECT_NEAR(comparison.pressures[0].simulation.second_rise->time,
               6.3 + 0.1 * (1.45 - 1.375) / (1.484375 - 1.375), 1e-3);
 }
 
-TEST(Evidence, OfPressuresTooHighByAFifthIsAFifth) {
-  const Evidence evidence = compare_with_delay(0.0, 1.2);
-  const PressureEvidence& wall = evidence.pressures[0];
+TEST(Comparison, OfPressuresTooHighByAFifthIsAFifth) {
+  const Comparison comparison = compare_with_delay(0.0, 1.2);
+  const PressureComparison& wall = comparison.pressures[0];
   EXPECT_NEAR(*wall.relative_l2, 0.2, 2e-3);
   EXPECT_NEAR(wall.simulation.peak->value, 1.2, 1e-9);
   EXPECT_NEAR(*wall.place_in_band(), 0.7, 1e-9) << "1.2 between 0.5 and 1.5";
@@ -134,53 +134,53 @@ TEST(Evidence, OfPressuresTooHighByAFifthIsAFifth) {
   EXPECT_NEAR(wall.simulation.second_rise->height, 1.8, 1e-6);
 }
 
-TEST(Evidence, HasNoErrorAndNoShiftWhereNothingArrives) {
-  const Evidence evidence = compare_with_delay(0.0, 0.0);
-  EXPECT_FALSE(evidence.shift);
-  EXPECT_FALSE(evidence.mean_relative_l2);
-  EXPECT_FALSE(evidence.pressures[0].simulation.arrival);
+TEST(Comparison, HasNoErrorAndNoShiftWhereNothingArrives) {
+  const Comparison comparison = compare_with_delay(0.0, 0.0);
+  EXPECT_FALSE(comparison.shift);
+  EXPECT_FALSE(comparison.mean_relative_l2);
+  EXPECT_FALSE(comparison.pressures[0].simulation.arrival);
 }
 
-TEST(Evidence, HasNoMeanWhereASensorOfTheExperimentIsMissing) {
+TEST(Comparison, HasNoMeanWhereASensorOfTheExperimentIsMissing) {
   const Scene scene = half_size_scene();
   Reference reference = made_up_reference();
   reference.pressures.push_back(reference.pressures.front());
   reference.pressures.back().height = 0.08;
-  const Evidence evidence = compare(
+  const Comparison comparison = compare(
       scene, {series_of(scene, "low", "pressure", unit_of_pressure(scene), impact)}, reference);
-  EXPECT_EQ(evidence.pressures.size(), 1u);
-  EXPECT_TRUE(evidence.pressures[0].relative_l2);
-  EXPECT_FALSE(evidence.mean_relative_l2);
+  EXPECT_EQ(comparison.pressures.size(), 1u);
+  EXPECT_TRUE(comparison.pressures[0].relative_l2);
+  EXPECT_FALSE(comparison.mean_relative_l2);
 }
 
-TEST(Evidence, HasNoErrorForARunThatEndsInsideTheWindow) {
+TEST(Comparison, HasNoErrorForARunThatEndsInsideTheWindow) {
   const Scene scene = half_size_scene();
   Series series = series_of(scene, "low", "pressure", unit_of_pressure(scene), impact);
   for (auto* column : {&series.time, &series.duration, &series.values, &series.weight}) {
     column->resize(6000);
   }
   const Reference reference = made_up_reference();
-  const Evidence evidence = compare(scene, {series}, reference);
-  EXPECT_FALSE(evidence.pressures[0].relative_l2);
-  EXPECT_TRUE(evidence.pressures[0].simulation.plateau) << "the plateau was reached";
+  const Comparison comparison = compare(scene, {series}, reference);
+  EXPECT_FALSE(comparison.pressures[0].relative_l2);
+  EXPECT_TRUE(comparison.pressures[0].simulation.plateau) << "the plateau was reached";
 }
 
-TEST(Evidence, ComparesLevelsAndFrontWithoutAShift) {
+TEST(Comparison, ComparesLevelsAndFrontWithoutAShift) {
   const Scene scene = half_size_scene();
   const Reference reference = made_up_reference();
   const double height = scene.scales->height;
-  const Evidence evidence =
+  const Comparison comparison =
       compare(scene,
               {series_of(scene, "surface", "surface_height", height, [](double) { return 0.6; }),
                // The front of the reference, a quarter of T later: X = w0/h0 + 1.5 (T - 0.25).
                series_of(scene, "tip", "surge_front", height,
                          [](double t) { return 2.0 + 1.5 * std::max(t - 0.25, 0.0); })},
               reference);
-  ASSERT_EQ(evidence.levels.size(), 1u);
-  EXPECT_NEAR(*evidence.levels[0].rms_difference, 0.1, 1e-9);
-  ASSERT_TRUE(evidence.front);
-  EXPECT_NEAR(*evidence.front->delay, 0.25, 1e-9);
-  EXPECT_FALSE(evidence.shift);
+  ASSERT_EQ(comparison.levels.size(), 1u);
+  EXPECT_NEAR(*comparison.levels[0].rms_difference, 0.1, 1e-9);
+  ASSERT_TRUE(comparison.front);
+  EXPECT_NEAR(*comparison.front->delay, 0.25, 1e-9);
+  EXPECT_FALSE(comparison.shift);
 }
 
 TEST(PressureCurve, CountsDrySamplesAsZeroSoThatTheFilterDoesNotBringTheArrivalForward) {
