@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,50 +11,13 @@
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/read/dimensionless.hpp"
-#include "engine/store/read/filter.hpp"
+#include "engine/store/read/series_view.hpp"
 #include "engine/study/table.hpp"
-#include "service/api/series_view.hpp"
 
 namespace sluice {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A series as it is shown: filtered, scaled.
-struct View {
-  Series series;
-  std::size_t samples = 0;                  ///< in the time asked for
-  std::optional<double> provisional_after;  ///< in the view's unit of time
-};
-
-Series filtered(const Series& series, double tau) {
-  Series result = series;
-  const std::size_t width = series.columns.size();
-  for (std::size_t column = 0; column < width; ++column) {
-    const Filtered values = gaussian_filter(series, tau, column);
-    for (std::size_t n = 0; n < series.size(); ++n) {
-      result.values[n * width + column] = values.value[n];
-    }
-  }
-  return result;
-}
-
-/// The samples of a time, both ends included.
-Series samples_within(const Series& series, double from, double to) {
-  const auto first = std::lower_bound(series.time.begin(), series.time.end(), from);
-  const auto last = std::upper_bound(first, series.time.end(), to);
-  const auto begin = first - series.time.begin();
-  const auto end = last - series.time.begin();
-  const auto part = [&](const std::vector<double>& all, std::ptrdiff_t width) {
-    return std::vector<double>(all.begin() + begin * width, all.begin() + end * width);
-  };
-  Series result = series;
-  result.time = part(series.time, 1);
-  result.duration = part(series.duration, 1);
-  result.weight = part(series.weight, 1);
-  result.values = part(series.values, static_cast<std::ptrdiff_t>(series.columns.size()));
-  return result;
-}
 
 Divisors divisors_or_end(const JobData& job, const Series& series) {
   try {
@@ -67,82 +27,14 @@ Divisors divisors_or_end(const JobData& job, const Series& series) {
   }
 }
 
-/// To the time and the number of samples that were asked for.
-void cut(View& view, const SensorArguments& arguments) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  view.series = samples_within(view.series, arguments.from.value_or(-infinity),
-                               arguments.to.value_or(infinity));
-  view.samples = view.series.size();
-  if (!arguments.max_points) return;
-  view.series = decimate(view.series, static_cast<std::size_t>(*arguments.max_points));
-}
-
-View make_view(const JobData& job, const Series& raw, const SensorArguments& arguments) {
-  View view{raw, raw.size(), {}};
-  if (arguments.filter == FilterKind::gaussian) {
-    view.series = filtered(raw, *arguments.tau);
-    if (!job.completed() && raw.size() > 0) {
-      view.provisional_after = provisional_after(raw, *arguments.tau);
-    }
-  }
-  cut(view, arguments);
-  if (arguments.dimensionless) {
-    const Divisors divisors = divisors_or_end(job, raw);
-    view.series = dimensionless(std::move(view.series), divisors);
-    if (view.provisional_after) *view.provisional_after /= divisors.time;
-  }
-  return view;
-}
-
-/// An empty cell where there is no value: a dry sensor did not measure zero.
-std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
-
-std::string csv_of(const View& view, bool dimensionless) {
-  const Series& series = view.series;
-  const std::size_t width = series.columns.size();
-  std::string text = dimensionless ? "time" : "time_s";
-  for (const Series::Column& column : series.columns) text += fmt::format(",{}", column.name);
-  text += ",weight\n";
-  for (std::size_t n = 0; n < series.size(); ++n) {
-    text += fmt::format("{}", series.time[n]);
-    for (std::size_t c = 0; c < width; ++c)
-      text += fmt::format(",{}", cell(series.values[n * width + c]));
-    text += fmt::format(",{}\n", series.weight[n]);
-  }
-  return text;
-}
-
-Json column_json(const Series& series, std::size_t column) {
-  Json values = Json::array();
-  for (std::size_t n = 0; n < series.size(); ++n) {
-    const double value = series.values[n * series.columns.size() + column];
-    values.push_back(std::isnan(value) ? Json(nullptr) : Json(value));
-  }
-  return Json{{"name", series.columns[column].name},
-              {"unit", series.columns[column].unit},
-              {"values", std::move(values)}};
-}
-
-Json json_of(const View& view, const SensorArguments& arguments) {
-  const Series& series = view.series;
-  const bool gaussian = arguments.filter == FilterKind::gaussian;
-  Json object{{"name", series.name}, {"kind", series.kind}};
-  object["filter"] = gaussian ? "gaussian" : "none";
-  object["tau"] = gaussian ? Json(*arguments.tau) : Json(nullptr);
-  object["dimensionless"] = arguments.dimensionless;
-  object["provisional_after"] =
-      view.provisional_after ? Json(*view.provisional_after) : Json(nullptr);
-  object["samples"] = view.samples;
-  object["decimated"] = view.samples != series.size();
-  object["time_unit"] = arguments.dimensionless ? "1" : "s";
-  object["time"] = series.time;
-  Json columns = Json::array();
-  for (std::size_t c = 0; c < series.columns.size(); ++c) {
-    columns.push_back(column_json(series, c));
-  }
-  object["columns"] = std::move(columns);
-  object["weight"] = series.weight;
-  return object;
+SeriesQuery query_of(const JobData& job, const Series& raw, const SensorArguments& arguments) {
+  SeriesQuery query;
+  query.from = arguments.from;
+  query.to = arguments.to;
+  if (arguments.filter == FilterKind::gaussian) query.tau = arguments.tau;
+  if (arguments.max_points) query.max_points = static_cast<std::size_t>(*arguments.max_points);
+  if (arguments.dimensionless) query.divisors = divisors_or_end(job, raw);
+  return query;
 }
 
 void list_sensors(const std::vector<Series>& all, Format format) {
@@ -210,13 +102,16 @@ void show_sensors(SensorArguments arguments) {
   const JobData job(arguments.target);
   const std::vector<Series> all = job.series();
   if (arguments.name.empty()) return list_sensors(all, arguments.format);
-  const View view = make_view(job, find_series(all, arguments.name), arguments);
-  if (arguments.format == Format::csv) {
-    note_samples_left_out(view.series.size(), view.samples);
-    fmt::print("{}", csv_of(view, arguments.dimensionless));
-  } else {
-    fmt::print("{}\n", json_of(view, arguments).dump());
+  const Series& raw = find_series(all, arguments.name);
+  const SeriesQuery query = query_of(job, raw, arguments);
+  const SeriesView view =
+      make_view(raw, query, job.completed() ? SeriesState::final : SeriesState::growing);
+  if (arguments.format == Format::json) {
+    fmt::print("{}", json_text(view, query));
+    return;
   }
+  note_samples_left_out(view.series.size(), view.samples);
+  fmt::print("{}", csv_text(view, query));
 }
 
 }  // namespace

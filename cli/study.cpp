@@ -40,18 +40,15 @@ struct StudyArguments {
   [[nodiscard]] fs::path file() const { return study; }
 };
 
-std::string load_scene(const std::string& name, const void* context) {
-  const auto& beside = *static_cast<const fs::path*>(context);
-  return read_text(beside / name, kMaxSceneBytes + 1);
-}
-
 StudyPlan read_study(const fs::path& file) {
   std::string path = file.string();
   if (const std::string wrong = existing_file()(path); !wrong.empty()) {
     throw CommandEnd(ExitCode::usage, wrong);
   }
   const fs::path beside = file.parent_path();
-  StudyPlan plan = plan_study(read_text(file, kMaxSceneBytes + 1), &load_scene, &beside);
+  StudyPlan plan = plan_study(read_text(file, kMaxSceneBytes + 1), [&](const std::string& name) {
+    return read_text(beside / name, kMaxSceneBytes + 1);
+  });
   if (plan.problems.empty()) return plan;
   for (const Problem& problem : plan.problems) {
     std::fputs(fmt::format("{}: {}: {}\n", file.string(),

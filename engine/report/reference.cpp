@@ -122,8 +122,8 @@ Reference parse_reference(const std::string& name, const std::string& text) {
 const std::vector<Reference>& references() {
   static const std::vector<Reference> all = [] {
     std::vector<Reference> read;
-    for (const ReferenceText& file : kReferenceTexts) {
-      read.push_back(parse_reference(std::string(file.name), std::string(file.text)));
+    for (const auto& [name, text] : kReferenceTexts) {
+      read.push_back(parse_reference(std::string(name), std::string(text)));
     }
     return read;
   }();

@@ -82,9 +82,9 @@ RunFacts run_facts(const Json& outcome) {
   facts.wall_particles = number_in(outcome, "/wall_particles");
   // "removed" is the word of builds before.
   const std::string removed = outcome.contains("removed") ? "/removed/" : "/retired/";
-  facts.overtopped = number_in(outcome, removed + "overtopped");
-  facts.leaked = number_in(outcome, removed + "leaked");
-  facts.excluded = number_in(outcome, removed + "excluded");
+  facts.overtopped = number_in(outcome, (removed + "overtopped").c_str());
+  facts.leaked = number_in(outcome, (removed + "leaked").c_str());
+  facts.excluded = number_in(outcome, (removed + "excluded").c_str());
   facts.max_speed = number_in(outcome, "/extremes/max_speed");
   facts.min_density_ratio = number_in(outcome, "/extremes/min_density_ratio");
   facts.max_density_ratio = number_in(outcome, "/extremes/max_density_ratio");

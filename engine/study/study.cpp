@@ -286,12 +286,6 @@ void check_values(const Study& study, std::size_t most, Problems& problems) {
   }
 }
 
-/// Where the files come from that a study names.
-struct SceneFiles {
-  SceneLoader load;
-  const void* context;
-};
-
 /// What a case or an axis sets has present names, or gets them: so has its base.
 json with_present_words(json scene, const std::string& pointer, const std::string& where,
                         Problems& problems) {
@@ -305,16 +299,16 @@ json with_present_words(json scene, const std::string& pointer, const std::strin
 
 /// A base scene as JSON, which stands in the study at `pointer` or names a file there.
 std::optional<json> base_scene(const json& given, const std::string& pointer,
-                               const SceneFiles& files, Problems& problems) {
+                               const SceneLoader& load, Problems& problems) {
   if (given.is_object()) return with_present_words(given, pointer, "", problems);
   const std::string name = given.get<std::string>();
-  if (files.load == nullptr) {
+  if (!load) {
     problems.add(pointer, "names a file; must be the scene itself here");
     return std::nullopt;
   }
   try {
     Problems inner;
-    auto scene = read_json(files.load(name, files.context), inner);
+    auto scene = read_json(load(name), inner);
     for (const Problem& problem : inner.take()) {
       problems.add(pointer, fmt::format("{}: {}: {}", name, problem.pointer, problem.message));
     }
@@ -329,14 +323,14 @@ std::optional<json> base_scene(const json& given, const std::string& pointer,
 }
 
 /// The base of each case, or of the study where it has none; incomplete when there are problems.
-std::vector<json> base_scenes(const Study& study, const SceneFiles& files, Problems& problems) {
+std::vector<json> base_scenes(const Study& study, const SceneLoader& load, Problems& problems) {
   std::vector<json> bases;
-  const auto common = base_scene(study.scene, "/scene", files, problems);
+  const auto common = base_scene(study.scene, "/scene", load, problems);
   if (study.cases.empty() && common) bases.push_back(*common);
   for (std::size_t k = 0; k < study.cases.size(); ++k) {
     const json& own = study.cases[k].scene;
     const auto base =
-        own.is_null() ? common : base_scene(own, at(at("/cases", k), "scene"), files, problems);
+        own.is_null() ? common : base_scene(own, at(at("/cases", k), "scene"), load, problems);
     if (base) bases.push_back(*base);
   }
   return bases;
@@ -344,7 +338,7 @@ std::vector<json> base_scenes(const Study& study, const SceneFiles& files, Probl
 
 }  // namespace
 
-StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context, std::size_t most,
+StudyPlan plan_study(std::string_view text, const SceneLoader& load, std::size_t most,
                      SceneOrigin origin) {
   StudyPlan plan;
   Problems problems;
@@ -356,7 +350,7 @@ StudyPlan plan_study(std::string_view text, SceneLoader load, const void* contex
     reader.finish();
     check_values(plan.study, most, problems);
     if (problems.empty()) {
-      std::vector<json> bases = base_scenes(plan.study, {load, context}, problems);
+      std::vector<json> bases = base_scenes(plan.study, load, problems);
       if (problems.empty()) Planner(plan, problems, std::move(bases), origin).make_all();
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -66,15 +67,15 @@ struct StudyPlan {
 };
 
 /// Gives the text of a scene's file named in a study. Throws std::runtime_error with the reason.
-using SceneLoader = std::string (*)(const std::string& name, const void* context);
+using SceneLoader = std::function<std::string(const std::string& name)>;
 
 /// Reads a study and makes every run's scene. Nothing is thrown for bad text. Scenes that are
 /// predicted to be unstable are accepted: finding out is what a study is for. `origin` is that of
-/// the study: user's or one that was taken before. `load` may be null:
+/// the study: user's or one that was taken before. `load` may be empty:
 /// then the scene must stand in the study itself. A study of more than `most` runs is refused
 /// before any is made, one of more than kMaxStudyBytes as soon as that shows: what it takes of
 /// memory and time is bounded by these two.
-[[nodiscard]] StudyPlan plan_study(std::string_view text, SceneLoader load, const void* context,
+[[nodiscard]] StudyPlan plan_study(std::string_view text, const SceneLoader& load,
                                    std::size_t most = kMaxStudyRuns,
                                    SceneOrigin origin = SceneOrigin::user);
 

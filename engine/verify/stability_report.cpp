@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/draw/markup.hpp"
+#include "engine/draw/page.hpp"
 
 namespace sluice {
 namespace {
@@ -124,14 +125,12 @@ std::string suite_html(const std::vector<JudgedCase>& all) {
         escaped(figures_text(result)) + "<br><small>" + escaped(result.reason) + "</small>",
         escaped(subject.gate) + why, picture_svg(result.picture));
   }
-  return fmt::format(
-      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Sluice stability</title>\n"
-      "<style>body{{font:14px sans-serif;margin:2em}}td,th{{padding:6px;text-align:left;"
-      "vertical-align:top;border-bottom:1px solid #ccc}}.miss td:first-child{{color:#b00020;"
-      "font-weight:bold}}</style>\n<h1>Stability: {}</h1>\n<table><tr><th></th>"
-      "<th>case</th><th>verdict</th><th>figures</th><th>gate</th><th>last state, colour is speed"
-      "</th></tr>\n{}</table></html>\n",
-      tally_text(tally(all)), rows);
+  return html_page(
+      "Sluice stability",
+      fmt::format("<h1>Stability: {}</h1>\n<table>\n<tr><th></th><th>case</th><th>verdict</th>"
+                  "<th>figures</th><th>gate</th><th>last state, colour is speed</th></tr>\n"
+                  "{}</table>\n",
+                  tally_text(tally(all)), rows));
 }
 
 }  // namespace sluice

@@ -6,13 +6,28 @@
 #include "engine/study/study.hpp"
 #include "service/api/api_routes.hpp"
 #include "service/http/query.hpp"
-#include "sluice/openapi_text.hpp"
+#include "sluice/openapi_texts.hpp"
 #include "sluice/version.hpp"
 
 namespace sluice {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// schemas/openapi.json. As a file it names the schemas beside it, here those that are served.
+const std::string& openapi_text() {
+  static const std::string served = [] {
+    std::string text(kOpenapiTexts[0].second);
+    for (const std::string name : {"scene", "study"}) {
+      const std::string beside = fmt::format("\"{}.schema.json\"", name);
+      for (std::size_t at = 0; (at = text.find(beside, at)) != std::string::npos;) {
+        text.replace(at, beside.size(), fmt::format("\"/v1/schemas/{}\"", name));
+      }
+    }
+    return text;
+  }();
+  return served;
+}
 
 }  // namespace
 
@@ -30,7 +45,7 @@ Response show_index(ApiContext& /*context*/, const RouteRequest& request) {
 
 Response show_openapi(ApiContext& /*context*/, const RouteRequest& request) {
   QueryReader(request.http).finish();
-  return text_response(std::string(kOpenApiText), "application/json");
+  return text_response(openapi_text(), "application/json");
 }
 
 Response list_schemas(ApiContext& /*context*/, const RouteRequest& request) {

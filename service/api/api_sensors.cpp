@@ -9,8 +9,8 @@
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/file_system.hpp"
 #include "engine/store/files/series_file.hpp"
+#include "engine/store/read/series_view.hpp"
 #include "service/api/api_routes.hpp"
-#include "service/api/series_view.hpp"
 #include "service/http/query.hpp"
 
 namespace sluice {
@@ -20,7 +20,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 2> kFilters{"none", "gaussian"};
 constexpr std::array<std::string_view, 2> kSeriesFormats{"json", "csv"};
+constexpr int kUsualPoints = 20'000;
 constexpr int kMostPoints = 200'000;
+constexpr double kMostProducts = 5e7;  // of a filter: half a second of one core
 
 enum class Format { json, csv };
 
@@ -81,8 +83,9 @@ SensorQuery read_query(const Request& request) {
   asked.series.to = query.number("to", -1e9, 1e9);
   const bool gaussian = query.word("filter", kFilters).value_or("none") == "gaussian";
   asked.series.tau = query.number("tau", 1e-9, 1e6);
-  const auto points = query.integer("max_points", 10, kMostPoints);
-  if (points) asked.series.max_points = static_cast<std::size_t>(*points);
+  const auto points = query.integer("max_points", 10, kMostPoints).value_or(kUsualPoints);
+  asked.series.max_points = static_cast<std::size_t>(points);
+  asked.series.max_products = kMostProducts;
   asked.dimensionless = query.flag("dimensionless");
   const auto format = query.word("format", kSeriesFormats);
   if (gaussian && !asked.series.tau) query.reject("tau", "is needed with filter=gaussian, in s");

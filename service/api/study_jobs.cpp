@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Regions that overlap show only when they are filled. What goes beyond is left to the workers.
-constexpr std::uint64_t kTrialParticles = 200'000;
+constexpr std::uint64_t kMostTried = 200'000;
 
 [[noreturn]] void refuse_study(const std::vector<Problem>& problems) {
   refuse(ProblemType::invalid_study, "the whole study", problems);
@@ -57,7 +57,7 @@ void check_overlap(const StudyPlan& plan) {
   for (const StudyRun& run : plan.runs) {
     const Estimate size = estimate(run.scene);
     particles += size.fluid_particles + size.wall_particles;
-    if (particles > kTrialParticles) return;
+    if (particles > kMostTried) return;
     if (const auto problem = problem_when_filled(run.scene)) {
       refuse_study(
           {{"", fmt::format("run {}: {}: {}", run.name, problem->pointer, problem->message)}});
@@ -79,7 +79,7 @@ Job job_of(const StudyRecord& study, const StudyRun& run, int threads, std::stri
 }  // namespace
 
 StudyPlan admit_study(std::string_view text, const ServiceLimits& limits) {
-  StudyPlan plan = plan_study(text, nullptr, nullptr, limits.runs_per_study);
+  StudyPlan plan = plan_study(text, {}, limits.runs_per_study);
   if (!plan.problems.empty()) refuse_study(plan.problems);
   check_limits(plan, limits);
   check_overlap(plan);
@@ -87,8 +87,7 @@ StudyPlan admit_study(std::string_view text, const ServiceLimits& limits) {
 }
 
 StudyPlan plan_of_study(const StudyStore& studies, const StudyRecord& study) {
-  StudyPlan plan =
-      plan_study(studies.document(study.id), nullptr, nullptr, kMaxStudyRuns, SceneOrigin::study);
+  StudyPlan plan = plan_study(studies.document(study.id), {}, kMaxStudyRuns, SceneOrigin::study);
   if (plan.problems.empty()) return plan;
   const Problem& problem = plan.problems.front();
   throw StorageError(

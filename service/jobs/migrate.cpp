@@ -6,7 +6,7 @@
 #include <string>
 
 #include "service/jobs/job_store.hpp"
-#include "sluice/migrations.hpp"
+#include "sluice/migration_texts.hpp"
 
 namespace sluice {
 namespace {
@@ -46,7 +46,7 @@ void require_whole(SqliteDb& db) {
 void migrate(SqliteDb& db, std::int64_t from) {
   for (std::int64_t version = from + 1; version <= newest_database_version(); ++version) {
     SqliteTransaction transaction(db);
-    db.execute(std::string(kMigrationTexts[static_cast<std::size_t>(version - 1)].sql));
+    db.execute(std::string(kMigrationTexts[static_cast<std::size_t>(version - 1)].second));
     db.execute(fmt::format("PRAGMA application_id = {}", kApplicationId));
     db.execute(fmt::format("PRAGMA user_version = {}", version));
     transaction.commit();

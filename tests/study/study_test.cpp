@@ -23,7 +23,7 @@ json puddle() {
 
 json small_study() { return {{"name", "small"}, {"scene", puddle()}}; }
 
-StudyPlan plan_of(const json& study) { return plan_study(study.dump(), nullptr, nullptr); }
+StudyPlan plan_of(const json& study) { return plan_study(study.dump(), {}); }
 
 void expect_refused(const json& study, const std::string& pointer, const std::string& words) {
   const StudyPlan plan = plan_of(study);
@@ -161,15 +161,15 @@ TEST(Study, RefusesAGridWithoutEndBeforeMakingIt) {
 TEST(Study, RefusesMoreRunsThanItsReaderAllows) {
   json study = small_study();
   study["members"] = {{"count", 3}};
-  EXPECT_EQ(plan_study(study.dump(), nullptr, nullptr, 3).runs.size(), 3u);
-  EXPECT_TRUE(plan_study(study.dump(), nullptr, nullptr, 2).runs.empty());
+  EXPECT_EQ(plan_study(study.dump(), {}, 3).runs.size(), 3u);
+  EXPECT_TRUE(plan_study(study.dump(), {}, 2).runs.empty());
 }
 
 TEST(Study, SurvivesAnyText) {
   for (const char* text : {"", "{", "[]", "3", "null", R"({"name": 3, "scene": null})",
                            R"({"name": "a", "scene": {}, "cases": [{"name": "b", "set": []}]})",
                            R"({"name": "a", "scene": [], "vary": {}})"}) {
-    const StudyPlan plan = plan_study(text, nullptr, nullptr);
+    const StudyPlan plan = plan_study(text, {});
     EXPECT_TRUE(plan.runs.empty()) << text;
     EXPECT_FALSE(plan.problems.empty()) << text;
   }
@@ -210,8 +210,7 @@ TEST(Study, TakenBeforeThereWereSchemesKeepsItsMeaning) {
   json study = small_study();
   study["scene"]["numerics"] = {{"integrator", "kick_drift_kick"}};
   expect_refused(study, "", "names no scheme");
-  const StudyPlan plan =
-      plan_study(study.dump(), nullptr, nullptr, kMaxStudyRuns, SceneOrigin::study);
+  const StudyPlan plan = plan_study(study.dump(), {}, kMaxStudyRuns, SceneOrigin::study);
   ASSERT_EQ(plan.runs.size(), 1u);
   EXPECT_FALSE(plan.runs[0].scene.method.shifting);
   EXPECT_FALSE(parse_job_scene(plan.runs[0].scene_text).scene->method.shifting);
@@ -230,17 +229,14 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::string load_beside(const std::string& name, const void* folder) {
-  return text_of(*static_cast<const std::filesystem::path*>(folder) / name);
-}
-
 TEST(Study, ExamplesAreAccepted) {
   const std::filesystem::path folder =
       std::filesystem::path(SLUICE_SOURCE_DIR) / "schemas" / "examples";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!entry.path().filename().string().starts_with("study-")) continue;
-    const StudyPlan plan = plan_study(text_of(entry.path()), &load_beside, &folder);
+    const StudyPlan plan = plan_study(
+        text_of(entry.path()), [&](const std::string& name) { return text_of(folder / name); });
     for (const Problem& problem : plan.problems) ADD_FAILURE() << entry << problem.message;
     EXPECT_FALSE(plan.runs.empty()) << entry;
     EXPECT_EQ(plan.study.name, entry.path().stem());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/scene/checks/parse.hpp"
 #include "engine/scene/format/written_scene.hpp"
 #include "engine/scene/model/problems.hpp"
 

@@ -449,7 +449,7 @@ void describe(Archive& a, WrittenScene& written) {
             .range = from(-1e9, 1e9),
             .otherwise = "no gravity"});
   a.section("domain", written.domain,
-            {.about = "a particle that leaves this box is retired",
+            {.about = "a particle that leaves this box is removed",
              .otherwise = "the tank with its walls and room above, or the fluid with ample room"});
   a.section("material", {.about = "the fluid"},
             [&](auto& child) { describe_material(child, written); });

@@ -150,7 +150,7 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x, V trace
   }
 }
 
-/// Positions of the particles i as seen from the origin_cell of a cluster j.
+/// Positions of the particles i as seen from the origin cell of a cluster j.
 template <typename T>
 struct OriginShift {
   T x[9];

@@ -79,11 +79,11 @@ struct Sweeps {
   Sweep acceleration = nullptr;              ///< eqs. 5, 8, viscous stress
   Sweep wall_pressure = nullptr;             ///< eq. 9: sums = s of the wall particle
   Sweep reinitialise = nullptr;              ///< eq. 10
-  /// The clusters whose boxes meet that of cluster i, as entries of the same origin_cell; returns
+  /// The clusters whose boxes meet that of cluster i, as entries of the same origin cell; returns
   /// how many.
   std::size_t (*search)(const SearchTask&) = nullptr;
   /// Keeps the candidates of which a particle may come within the cut-off of one of cluster i while
-  /// both stay within the leeway of their tracks.
+  /// both stay within the skin of their paths.
   std::size_t (*prune)(const PruneTask<T>&) = nullptr;
   Updates<T> updates;       ///< the loops over particles that go with them
   std::string_view target;  ///< name of the SIMD target

@@ -131,7 +131,7 @@ struct Updates {
   void (*write_places)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
   void (*write_velocities)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
   void (*write_densities)(const ParticleSpan&, const PairScales&, PairArrays<T>&) = nullptr;
-  /// Whether a particle, `elapsed` h/c after the tracks began, is off its own.
+  /// Whether a particle, `elapsed` h/c after the paths began, is off its own.
   void (*compare)(const ParticleSpan&, const PairArrays<T>&, const ListPathsView<T>&,
                   const Skin<T>&, T elapsed, Motion&) = nullptr;
   /// Adds to a chunk's own sums those that others have for it, in this order.

@@ -36,8 +36,8 @@ class Grid {
   /// A cluster spans at most this much of a row, m.
   [[nodiscard]] double max_cluster_length() const { return max_cluster_length_; }
 
-  /// Tiles: squares whose centres are the origins of single-precision positions. One origin_cell
-  /// where that resolves 3e-5 h.
+  /// Origin cells: squares whose centres are the origins of single-precision positions. One origin
+  /// cell where that resolves 3e-5 h.
   struct OriginCell {
     int column = 0;
     int row = 0;
@@ -49,7 +49,7 @@ class Grid {
            origin_cell_size_ * Vec(origin_cell.column + 0.5, origin_cell.row + 0.5);
   }
   [[nodiscard]] double origin_cell_size() const { return origin_cell_size_; }
-  /// Whether there is no other origin_cell than one.
+  /// Whether there is no other origin cell than one.
   [[nodiscard]] bool has_one_origin_cell() const { return one_origin_cell_; }
 
  private:

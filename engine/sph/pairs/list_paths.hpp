@@ -50,7 +50,7 @@ struct ListPaths {
   void resize(std::size_t slots) {
     for (auto* a : {&x, &y, &u, &v}) a->resize(slots);
   }
-  /// Begins the tracks of the slots [begin, end) where they are.
+  /// Begins the paths of the slots [begin, end) where they are.
   void begin(const PairArrays<T>& now, std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       x[s] = now.x[s];
@@ -63,7 +63,7 @@ struct ListPaths {
   [[nodiscard]] std::size_t bytes() const { return x.bytes() + y.bytes() + u.bytes() + v.bytes(); }
 };
 
-/// Farther from its origin_cell's origin than this, in h, are only empty slots.
+/// Farther from its origin cell's origin than this, in h, are only empty slots.
 inline constexpr double kNowhere = 1e7;
 
 /// A coordinate in h that no kernel reaches, for a slot that holds nothing; no two slots are near

@@ -69,7 +69,7 @@ struct PairView {
 };
 
 /// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one entry per
-/// slot. Positions are relative to the origin of the cluster's origin_cell, so that single
+/// slot. Positions are relative to the origin of the cluster's origin cell, so that single
 /// precision resolves them in a domain of any size.
 template <typename T>
 struct PairArrays {
@@ -113,7 +113,7 @@ struct BoxesView {
 /// so that no two chunks ever add to the same place and the result does not depend on threads.
 struct PairList {
   struct Chunk {
-    std::vector<std::uint32_t> entries;  ///< cluster index | origin_cell shift code << kShiftBit
+    std::vector<std::uint32_t> entries;  ///< cluster index | origin cell shift code << kShiftBit
     std::vector<std::uint32_t> begin;    ///< of each cluster of the chunk, and the end
     std::vector<std::uint32_t> targets;  ///< mutual: place of each entry in the chunk's sums
     std::vector<std::uint32_t> halos;    ///< mutual: clusters of later chunks that have a place,
@@ -160,8 +160,8 @@ struct Contribution {
   std::uint32_t chunk, place, cluster;
 };
 
-/// OriginCell shift codes 0-8: (X_j's origin_cell - X_i's origin_cell) + 1 in each direction, row
-/// by row; 4 is the same origin_cell.
+/// Origin cell shift codes 0-8: (X_j's origin cell - X_i's origin cell) + 1 in each direction, row
+/// by row; 4 is the same origin cell.
 inline constexpr std::uint32_t kSameOriginCell = 4;
 
 }  // namespace sluice

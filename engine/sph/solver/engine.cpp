@@ -428,7 +428,7 @@ void Engine<T>::reorder(Order order) {
   layout = std::move(order.layout);
 }
 
-/// Everything that follows from the order: origin_cells, pair arrays and lists.
+/// Everything that follows from the order: origin cells, pair arrays and lists.
 template <typename T>
 void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
@@ -442,7 +442,7 @@ void Engine<T>::bind() {
   make_lists();
 }
 
-/// Pair lists for tracks that begin here and now.
+/// Pair lists for paths that begin here and now.
 template <typename T>
 void Engine<T>::make_lists() {
   paths_.age = 0.0;

@@ -11,7 +11,7 @@ namespace {
 // Of differences of bounds; the bounds themselves are rounded outwards.
 constexpr float kSlack = 1e-3F;
 
-/// The entries' origin_cells as seen from that of cluster i.
+/// The entries' origin cells as seen from that of cluster i.
 void note_origin_cells(const Grid::OriginCell& i, const ClusterBounds& other,
                        std::span<std::uint32_t> entries) {
   for (std::uint32_t& entry : entries) {
@@ -29,7 +29,7 @@ class RowSearch {
   RowSearch(const Layout& layout, const ClusterBounds& bounds, float cut_off)
       : layout_(layout), bounds_(bounds), range_(cut_off + kSlack) {}
 
-  /// Starts at a new row of `self`, within [low, high]. Strips of `other` before `first_row`
+  /// Starts at a new row of `self`, within [low, high]. Rows of `other` before `first_row`
   /// are left out.
   void start(float low, float high, std::size_t first_row) {
     rows_.clear();

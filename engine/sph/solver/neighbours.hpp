@@ -23,7 +23,7 @@ namespace sluice {
 }
 
 /// Boxes, in smoothing lengths, that the clusters of one set stay in while their particles are
-/// within the leeway of their tracks.
+/// within the skin of their paths.
 struct ClusterBounds {
   AlignedArray<float> x_min, x_max, y_min, y_max;
   AlignedArray<float> x_max_before;           ///< largest x_max of the row up to the cluster
@@ -39,7 +39,7 @@ struct ClusterBounds {
 
   /// Room for the boxes of all clusters.
   void resize(const Layout& layout);
-  /// The boxes of the clusters [begin, end) by their tracks; the smoothing length in m.
+  /// The boxes of the clusters [begin, end) by their paths; the smoothing length in m.
   template <typename T>
   void assign_boxes(std::size_t begin, std::size_t end, const Grid& grid, double smoothing_length,
                     const ListPathsView<T>& paths);

@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kManyNeighbours = 200;
 
 /// The largest number of neighbours within `cut_off`, in h, of one particle when it is more than
 /// kManyNeighbours, else 0: a bound from the mutual list tells most cases. A neighbour in another
-/// origin_cell is left out.
+/// origin cell is left out.
 template <typename T>
 [[nodiscard]] std::uint32_t most_neighbours(ThreadTeam& team, const Layout& layout,
                                             const PairList& list, const ChunkSums<T>& sums,

@@ -24,7 +24,7 @@ fs::path unfinished_path(const fs::path& target) {
   return target.parent_path() / fmt::format(".{}{}", target.filename().string(), kUnfinished);
 }
 
-void make_folder(const fs::path& folder) {
+void make_subfolder(const fs::path& folder) {
   std::error_code error;
   if (!fs::create_directory(folder, error)) {
     throw system_error("cannot make the folder", folder, error ? error.value() : EEXIST);
@@ -36,7 +36,7 @@ class UnfinishedFolder {
  public:
   UnfinishedFolder(const fs::path& target, FileSystem& system)
       : target_(target), path_(unfinished_path(target)), system_(system) {
-    make_folder(path_);
+    make_subfolder(path_);
   }
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
@@ -129,7 +129,7 @@ void publish_folder(const fs::path& target, std::span<const FirstFile> files,
                        fmt::format("{}: is there already; choose another folder", target.string()));
   }
   UnfinishedFolder folder(target, system);
-  for (const std::string_view name : folders) make_folder(folder.path() / name);
+  for (const std::string_view name : folders) make_subfolder(folder.path() / name);
   for (const FirstFile& file : files) folder.write(file.name, file.text);
   folder.sync();
   folder.move_to_place();

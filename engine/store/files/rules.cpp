@@ -50,7 +50,7 @@ void require_particles(const Rules& rules, Integrator integrator, const Particle
 
 void require_removed(const Rules& rules, const std::vector<RemovedParticle>& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string what = fmt::format("retired particle {}: ", i);
+    const std::string what = fmt::format("removed particle {}: ", i);
     rules.require_finite(what + "id", list[i].id);
     rules.require_finite(what + "time", list[i].time);
     rules.require_finite(what + "x", list[i].x);

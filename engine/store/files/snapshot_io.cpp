@@ -37,7 +37,7 @@ Bytes encode(const Snapshot& frame) {
   return archive.image();
 }
 
-Snapshot decode(ByteSpan image) {
+Snapshot decode_snapshot(ByteSpan image) {
   ReadArchive archive(image);
   Snapshot frame;
   const std::uint64_t version = walk_format(archive, kSnapshotFormat);
@@ -77,7 +77,7 @@ void write_snapshot(const std::filesystem::path& path, const Snapshot& frame, Du
 
 Snapshot read_snapshot(const std::filesystem::path& path) {
   const Bytes image = read_verified(path);
-  return naming(path, [&] { return decode(image); });
+  return naming(path, [&] { return decode_snapshot(image); });
 }
 
 }  // namespace sluice

@@ -9,6 +9,7 @@
 #include "engine/store/files/series.hpp"
 #include "service/api/api.hpp"
 #include "tests/service/scheduler/scheduler_support.hpp"
+#include "tests/store/pressure_series.hpp"
 
 namespace sluice::test {
 
@@ -52,8 +53,5 @@ void expect_problem(const Response& response, int status, std::string_view slug)
 
 /// Expects row and folder of every job to be both there, and its scene to end where the row says.
 void expect_agreement(Service& service);
-
-/// Samples 0, 0.001, ... of a pressure sensor P1 with these values.
-[[nodiscard]] Series pressure_series(const std::vector<double>& values);
 
 }  // namespace sluice::test

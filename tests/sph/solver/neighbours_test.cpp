@@ -1,5 +1,5 @@
 // No pair within the support is ever missed: the engine's rates against all pairs, step after step,
-// where lists are old, particles fast, rows and origin_cells end. A missed pair at the very edge of
+// where lists are old, particles fast, rows and origin cells end. A missed pair at the very edge of
 // the support changes a rate by 1e-4 of a summand, far above the tolerances here.
 
 #include <gtest/gtest.h>

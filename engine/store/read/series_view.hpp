@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -14,7 +15,9 @@ struct SeriesQuery {
   std::optional<double> from;
   std::optional<double> to;
   std::optional<double> tau;  ///< of the Gaussian time filter, eq. 12; none: raw samples
-  std::size_t max_points = 20'000;
+  std::size_t max_points = std::numeric_limits<std::size_t>::max();
+  /// Products of the filter that one view may take: some 1e8 a second of one core.
+  double max_products = std::numeric_limits<double>::infinity();
   std::optional<Divisors> divisors;  ///< dimensionless; none: SI
 };
 
@@ -29,8 +32,7 @@ enum class SeriesState { growing, final };
 
 /// Filters, cuts, decimates and scales, in this order. Values of a `growing` series after
 /// `provisional_after` may still change: the filter looks 3 tau ahead. Throws std::invalid_argument
-/// when tau is not positive, std::length_error when the filter would take more than about half a
-/// second.
+/// when tau is not positive, std::length_error when the filter would take more than `max_products`.
 [[nodiscard]] SeriesView make_view(const Series& raw, const SeriesQuery& query, SeriesState state);
 
 /// At most `max_points` (10 or more) samples of a series, in order: the first, the last, and in

@@ -1,15 +1,16 @@
-#include "service/api/series_view.hpp"
+#include "engine/store/read/series_view.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <stdexcept>
 
 #include "engine/store/read/filter.hpp"
-#include "tests/service/api/api_support.hpp"
+#include "tests/store/pressure_series.hpp"
 
 namespace sluice::test {
 namespace {
@@ -107,6 +108,7 @@ TEST(SeriesView, CutsAtBothEndsInclusive) {
 TEST(SeriesView, RefusesAFilterThatTakesForEver) {
   const Series raw = pressure_series(std::vector<double>(20'000, 1.0));
   SeriesQuery query;
+  query.max_products = 5e7;
   query.tau = 1000.0;  // every sample with every other: 4e8 products
   EXPECT_THROW((void)make_view(raw, query, SeriesState::final), std::length_error);
   query.tau = 0.01;

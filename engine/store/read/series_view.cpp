@@ -1,4 +1,4 @@
-#include "service/api/series_view.hpp"
+#include "engine/store/read/series_view.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -9,14 +9,12 @@
 #include <limits>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/store/read/filter.hpp"
 
 namespace sluice {
 namespace {
-
-/// Pairs of samples that one answer may take: half a second of one core.
-constexpr double kMaxPairs = 5e7;
 
 /// Samples [first, last) of a series.
 Series slice(const Series& series, std::size_t first, std::size_t last) {
@@ -48,22 +46,22 @@ Span samples_between(const Series& series, double from, double to) {
   return {static_cast<std::size_t>(first - begin), static_cast<std::size_t>(last - begin)};
 }
 
-void require_cheap(const Series& series, double tau) {
+void require_cheap(const Series& series, double tau, double most) {
+  if (std::isinf(most)) return;
   double pairs = 0.0;
   for (std::size_t m = 0, first = 0; m < series.size(); ++m) {
     while (series.time[m] - series.time[first] >= kFilterReach * tau) ++first;
     pairs += 2.0 * static_cast<double>(m - first + 1);
   }
   pairs *= static_cast<double>(series.columns.size());
-  if (pairs <= kMaxPairs) return;
+  if (pairs <= most) return;
   throw std::length_error(fmt::format(
       "a filter of tau = {} s over {} samples takes {:.2g} products, above the limit of {:.2g}: "
       "choose a smaller tau, or a part of the time with from and to",
-      tau, series.size(), pairs, kMaxPairs));
+      tau, series.size(), pairs, most));
 }
 
 Series filtered(Series series, double tau) {
-  require_cheap(series, tau);
   const std::size_t width = series.columns.size();
   const Series raw = series;
   for (std::size_t column = 0; column < width; ++column) {
@@ -76,13 +74,15 @@ Series filtered(Series series, double tau) {
 }
 
 /// The samples from `from` to `to`, filtered with all that the filter reaches.
-Series filtered_part(const Series& raw, double from, double to, double tau) {
+Series filtered_part(const Series& raw, double from, double to, double tau, double most) {
   if (!(tau > 0.0) || !std::isfinite(tau)) throw std::invalid_argument("tau must be positive");
   const double reach = kFilterReach * tau;
   Span wide = samples_between(raw, from - reach, to + reach);
   // The filter takes the first sample's duration from its neighbour, so it gets one out of reach.
   if (wide.first > 0) --wide.first;
-  const Series part = filtered(slice(raw, wide.first, wide.last), tau);
+  Series part = slice(raw, wide.first, wide.last);
+  require_cheap(part, tau, most);
+  part = filtered(std::move(part), tau);
   const Span asked = samples_between(part, from, to);
   return slice(part, asked.first, asked.last);
 }
@@ -173,7 +173,7 @@ SeriesView make_view(const Series& raw, const SeriesQuery& query, SeriesState st
   const double to = query.to.value_or(infinity);
   SeriesView view;
   if (query.tau) {
-    view.series = filtered_part(raw, from, to, *query.tau);
+    view.series = filtered_part(raw, from, to, *query.tau, query.max_products);
     if (state == SeriesState::growing && raw.size() > 0) {
       view.provisional_after = provisional_after(raw, *query.tau);
     }
