@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/checks.hpp"
-#include "cli/client/job_data.hpp"
+#include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
 #include "engine/export/vtk_file.hpp"
 #include "engine/store/disk/apart.hpp"

@@ -11,7 +11,7 @@
 
 #include "cli/checks.hpp"
 #include "cli/client/fetched_job.hpp"
-#include "cli/client/job_data.hpp"
+#include "cli/job_data.hpp"
 #include "cli/client/job_names.hpp"
 #include "cli/client/service_client.hpp"
 #include "cli/verbs.hpp"

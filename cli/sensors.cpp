@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "cli/checks.hpp"
-#include "cli/client/job_data.hpp"
+#include "cli/job_data.hpp"
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/read/dimensionless.hpp"

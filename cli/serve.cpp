@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "cli/client/notify.hpp"
+#include "cli/notify.hpp"
 #include "cli/serve_options.hpp"
 #include "cli/stop_signals.hpp"
 #include "cli/verbs.hpp"

@@ -13,7 +13,7 @@ namespace sluice {
 
 struct ApiContext;
 
-/// All routes of design section 8. Knows no sockets; every error is problem+json (RFC 9457) and
+/// All routes (schemas/openapi.json). Knows no sockets; every error is problem+json (RFC 9457) and
 /// none leaves as an exception. May be called from any thread.
 class Api {
  public:

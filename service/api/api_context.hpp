@@ -18,7 +18,7 @@
 
 namespace sluice {
 
-/// Requests that may hold a thread for long; the rest of the server's 64 threads stay free.
+/// Requests that may hold a thread for long; the rest of the server's threads stay free.
 inline constexpr int kMaxStreams = 16;
 inline constexpr int kMaxWaits = 24;
 /// s between looks at the progress of a job that is waited for: progress makes no event.

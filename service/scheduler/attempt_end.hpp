@@ -59,7 +59,7 @@ struct AttemptVerdict {
   NextTry next = NextTry::at_once;
 };
 
-/// The table of design section 7.
+/// The table of service/README.md, "said by the attempt".
 [[nodiscard]] AttemptVerdict judge(const AttemptFacts& facts, int crash_limit);
 
 /// Seconds before the next attempt after `count` crashes or held locks in a row: 1, 2, 4, ... 60.

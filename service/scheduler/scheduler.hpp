@@ -15,7 +15,7 @@
 namespace sluice {
 
 /// Claims jobs, starts one worker process per attempt (`/proc/self/exe run FOLDER`), reads its JSON
-/// lines, and turns its end into a transition (design section 7). Owns one thread.
+/// lines, and turns its end into a transition. Owns one thread.
 ///
 /// When the disk has less than its reserve left, running jobs are paused with the reason and none
 /// is started. They stay paused until someone resumes them: only a person knows whether there is

@@ -373,8 +373,7 @@ TEST(CheckpointLayout, WithAGroupForEachSensorIsStillRead) {
 }
 
 TEST(CheckpointLayout, IsDescribedWithEveryNameInItsDocument) {
-  const fs::path document =
-      fs::path(__FILE__).parent_path().parent_path().parent_path() / "schemas" / "checkpoint.md";
+  const fs::path document = fs::path(SLUICE_SOURCE_DIR) / "schemas" / "checkpoint.md";
   std::ifstream file(document);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   ASSERT_FALSE(text.empty()) << document;

@@ -25,7 +25,7 @@ TEST(H5py, ReadsOurFilesAndGetsTextsAsText) {
   write_series(folder / "series.h5", make_samples());
   write_snapshot(folder / "frame.h5", make_test_snapshot(5));
   const fs::path here = fs::path(__FILE__).parent_path();
-  const fs::path document = here.parent_path().parent_path() / "schemas" / "checkpoint.md";
+  const fs::path document = fs::path(SLUICE_SOURCE_DIR) / "schemas" / "checkpoint.md";
   const std::string command = kPython + " '" + (here / "read_with_h5py.py").string() + "' '" +
                               folder.path().string() + "' '" + document.string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0) << command;

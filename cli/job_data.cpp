@@ -1,4 +1,4 @@
-#include "cli/client/job_data.hpp"
+#include "cli/job_data.hpp"
 
 #include <fmt/format.h>
 

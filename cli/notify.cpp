@@ -1,4 +1,4 @@
-#include "cli/client/notify.hpp"
+#include "cli/notify.hpp"
 
 #include <sys/socket.h>
 #include <sys/un.h>
