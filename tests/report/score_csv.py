@@ -3,7 +3,7 @@
 Usage: score_csv.py SLUICE ROOT
 
 What anybody can do with the CSV of `sluice sensors --filter gaussian` and the experiment's published figures must give what
-the report says: the rule for samples without fluid, the shift, the averages and the error are those of engine/study/README.md.
+the report says: the rule for samples without fluid, the shift, the averages and the error are those of engine/report/README.md.
 """
 
 import bisect
