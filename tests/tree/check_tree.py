@@ -10,18 +10,16 @@ import subprocess
 import sys
 
 # Folders a folder may include from, besides itself: dependencies point one way.
-CHAIN = ["engine/space", "engine/sph", "engine/scene", "engine/store", "engine/export", "engine/execute", "engine/run",
-         "engine/draw", "engine/study", "engine/report", "engine/verify"]
+CHAIN = ["engine/space", "engine/sph", "engine/scene", "engine/store", "engine/export", "engine/run", "engine/draw",
+         "engine/study", "engine/report", "engine/verify"]
 MAY_INCLUDE = {folder: set(CHAIN[:place]) for place, folder in enumerate(CHAIN)}
-# Pictures and studies are data: no run, and no executor, is behind them.
+# Pictures and studies are data: no run is behind them.
 for folder in ("engine/draw", "engine/study"):
-    MAY_INCLUDE[folder] -= {"engine/export", "engine/execute", "engine/run"}
-MAY_INCLUDE["engine/execute"] -= {"engine/export"}
-MAY_INCLUDE["engine/run"] -= {"engine/export", "engine/execute"}
+    MAY_INCLUDE[folder] -= {"engine/export", "engine/run"}
+MAY_INCLUDE["engine/run"] -= {"engine/export"}
 MAY_INCLUDE["engine/verify"] -= {"engine/export", "engine/report"}
 # No simulation code runs in the service: its jobs are processes.
-MAY_INCLUDE["service"] = {"engine/space", "engine/sph", "engine/scene", "engine/store", "engine/execute",
-                          "engine/draw", "engine/study"}
+MAY_INCLUDE["service"] = {"engine/space", "engine/sph", "engine/scene", "engine/store", "engine/draw", "engine/study"}
 MAY_INCLUDE["cli"] = set(CHAIN) | {"service"}
 MAY_INCLUDE["tests"] = set(CHAIN) | {"service", "cli"}
 
@@ -152,9 +150,10 @@ def check_paths(root, files):
 
 
 def check_folders(files):
-    """A README.md in each top-level folder and each folder of engine; nothing else at the top."""
+    """A README.md in each top-level folder, each folder of engine and each room; nothing else at the top."""
     known = set(files)
     folders = {module_of(path) for path in files} - {None}
+    folders |= {f"{module_of(path)}/{floor_of(path)[0]}" for path in files if floor_of(path)}
     folders |= {"engine"} if any(folder.startswith("engine/") for folder in folders) else set()
     for folder in sorted(folders):
         if not folder.startswith(".") and f"{folder}/README.md" not in known:

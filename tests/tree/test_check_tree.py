@@ -25,7 +25,10 @@ GOOD = {
 
 class CheckTree(unittest.TestCase):
     def found_in(self, files):
-        """Violations of a tree of these files (name: text; None: left out)."""
+        """Violations of a tree of these files (name: text; None: left out), with a README in each room."""
+        rooms = {f"{check_tree.module_of(name)}/{check_tree.floor_of(name)[0]}" for name in files
+                 if check_tree.floor_of(name)}
+        files = {**{f"{room}/README.md": "" for room in rooms}, **files}
         with tempfile.TemporaryDirectory() as root:
             for name, text in files.items():
                 if text is None:
@@ -61,6 +64,10 @@ class CheckTree(unittest.TestCase):
         self.assertEqual(self.found_in({**GOOD, **files, "engine/scene/checks/parse.cpp": down}), [])
         self.assert_one(self.found_in({**GOOD, **files, "engine/scene/model/scene.cpp": up}),
                         "engine/scene/model may not include from engine/scene/checks")
+
+    def test_a_room_without_a_readme_is_found(self):
+        self.assert_one(self.found_in({**GOOD, "engine/sph/method/README.md": None}),
+                        "engine/sph/method: has no README.md")
 
     def test_a_source_beside_the_rooms_is_found(self):
         self.assert_one(self.found_in({**GOOD, "engine/scene/stray.cpp": "\n"}), "is in no room of engine/scene")
