@@ -11,9 +11,9 @@
 
 #include "cli/checks.hpp"
 #include "cli/client/fetched_job.hpp"
-#include "cli/job_data.hpp"
 #include "cli/client/job_names.hpp"
 #include "cli/client/service_client.hpp"
+#include "cli/job_data.hpp"
 #include "cli/verbs.hpp"
 #include "engine/report/animation.hpp"
 #include "engine/report/snapshots.hpp"

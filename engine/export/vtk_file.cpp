@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "engine/store/hdf5/hdf5_file.hpp"
+#include "engine/store/hdf5/hdf5_writer.hpp"
 
 namespace sluice {
 namespace {

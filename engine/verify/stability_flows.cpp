@@ -99,13 +99,14 @@ CaseResult standing_wave(CaseRunner& bench) {
 /// Falls until most of the drop has met the floor. Its jets are five times as fast as the drop: the
 /// tank is so wide that they meet no wall.
 CaseResult droplet_at(CaseRunner& bench, double mach, Verdict expected) {
-  constexpr double kSound = 20.0;
+  constexpr double kDropSound = 20.0;
   const double dx = 0.1 / bench.pick(15, 40);
   Json drop = circle(Vec(1.5, 0.12), 0.1);
-  drop["velocity"] = {0.0, -mach * kSound};
-  return result_of(bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec(3.0, 0.5),
-                                        Json::array({drop}), dx, kSound, 0.2 / (mach * kSound))),
-                   expected);
+  drop["velocity"] = {0.0, -mach * kDropSound};
+  return result_of(
+      bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec(3.0, 0.5),
+                           Json::array({drop}), dx, kDropSound, 0.2 / (mach * kSound))),
+      expected);
 }
 CaseResult droplet_01(CaseRunner& b) { return droplet_at(b, 0.1, Verdict::stable_with_warnings); }
 CaseResult droplet_05(CaseRunner& b) { return droplet_at(b, 0.5, Verdict::unstable); }

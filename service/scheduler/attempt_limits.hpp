@@ -2,6 +2,7 @@
 
 #include "service/jobs/limits.hpp"
 #include "service/scheduler/attempt.hpp"
+#include "service/scheduler/scheduler_senses.hpp"
 
 namespace sluice {
 

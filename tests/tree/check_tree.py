@@ -34,9 +34,12 @@ FLOORS = {
 # Generated at build time; their content depends on no folder.
 GENERATED = "sluice/"
 
-# Foreign headers that live behind pairs of files, x.hpp and x.cpp, in the whole tree, and how many
-# pairs may: httplib's server side is the service's, its client side the command line's.
-PAIRS = {"hdf5.h": 1, "sqlite3.h": 1, "httplib.h": 2}
+# Where a foreign header may be included: in a room, or in one pair of files, x.hpp and x.cpp.
+FOREIGN = {
+    "hdf5.h": ["engine/store/hdf5/"],
+    "sqlite3.h": ["service/jobs/sqlite_db."],
+    "httplib.h": ["service/http/http_response.", "cli/client/http_client."],
+}
 
 # The method knows no files, no JSON, no logging.
 FORBIDDEN_IN = {
@@ -120,7 +123,6 @@ def check_include(path, number, quoted, target, known):
 
 def check_includes(root, files):
     known = set(files)
-    users = {header: [] for header in PAIRS}
     for path in files:
         if not path.endswith(SOURCE_SUFFIXES):
             continue
@@ -130,15 +132,9 @@ def check_includes(root, files):
                 continue
             target = match.group(2)
             yield from check_include(path, number, match.group(1) == '"', target, known)
-            if target in users:
-                users[target].append(path)
-    for header, paths in users.items():
-        stems = {os.path.splitext(path)[0] for path in paths}
-        folders = {module_of(path) for path in paths}
-        if len(stems) > PAIRS[header]:
-            yield f"{header}: included by more pairs of files than {PAIRS[header]}: {', '.join(paths)}"
-        elif len(folders) < len(stems):
-            yield f"{header}: included by two pairs of files of one folder: {', '.join(paths)}"
+            places = FOREIGN.get(target)
+            if places and not path.startswith(tuple(places)):
+                yield f"{path}:{number}: {target} may be included in {' and '.join(places)} alone"
 
 
 def check_paths(root, files):

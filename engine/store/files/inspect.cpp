@@ -15,7 +15,7 @@
 #include "engine/store/files/layout.hpp"
 #include "engine/store/files/series_file.hpp"
 #include "engine/store/files/snapshot_io.hpp"
-#include "engine/store/hdf5/hdf5_file.hpp"
+#include "engine/store/hdf5/hdf5_reader.hpp"
 
 namespace sluice {
 

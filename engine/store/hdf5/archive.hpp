@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "engine/store/disk/sha256.hpp"
-#include "engine/store/hdf5/hdf5_file.hpp"
+#include "engine/store/hdf5/hdf5_reader.hpp"
+#include "engine/store/hdf5/hdf5_writer.hpp"
 
 namespace sluice {
 

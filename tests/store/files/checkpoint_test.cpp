@@ -17,7 +17,8 @@
 #include "engine/store/files/layout.hpp"
 #include "engine/store/files/series_file.hpp"
 #include "engine/store/files/snapshot_io.hpp"
-#include "engine/store/hdf5/hdf5_file.hpp"
+#include "engine/store/hdf5/hdf5_reader.hpp"
+#include "engine/store/hdf5/hdf5_writer.hpp"
 #include "tests/store/expect_fault.hpp"
 #include "tests/store/fixtures.hpp"
 

@@ -8,7 +8,8 @@
 
 #include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/series_file.hpp"
-#include "engine/store/hdf5/hdf5_file.hpp"
+#include "engine/store/hdf5/hdf5_reader.hpp"
+#include "engine/store/hdf5/hdf5_writer.hpp"
 #include "tests/store/fixtures.hpp"
 
 namespace sluice::test {
