@@ -1,0 +1,44 @@
+// Clusters by their boxes. Included once per SIMD target.
+
+#if defined(SLUICE_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SLUICE_BOXES_INL
+#undef SLUICE_BOXES_INL
+#else
+#define SLUICE_BOXES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/sph/loops/updates.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sluice::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Which of the clusters from j on, before `end`, reach into [left, right].
+template <class D, class V>
+HWY_INLINE auto clusters_within(D d, const BoxesView& boxes, std::uint32_t j, std::uint32_t end,
+                                V left, V right) {
+  const auto beside =
+      hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
+  return hn::And(beside, hn::FirstN(d, end - j));
+}
+
+/// Writes first, first + 1, ... for the lanes of the mask, and a vector's worth beyond; returns how
+/// many they are.
+template <class D, class M>
+HWY_INLINE std::size_t list_slots(D, M mask, std::uint32_t first, std::uint32_t* HWY_RESTRICT out) {
+  const hn::RebindToUnsigned<D> d_number;
+  const auto chosen = hn::RebindMask(d_number, mask);
+  const auto numbers = hn::Iota(d_number, 0) + hn::Set(d_number, first);
+  hn::StoreU(hn::Compress(numbers, chosen), d_number, out);
+  return hn::CountTrue(d_number, chosen);
+}
+
+}  // namespace sluice::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

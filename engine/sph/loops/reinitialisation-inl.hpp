@@ -1,0 +1,70 @@
+// The sums of eq. 10. Included once per SIMD target.
+
+#if defined(SLUICE_REINITIALISATION_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SLUICE_REINITIALISATION_INL
+#undef SLUICE_REINITIALISATION_INL
+#else
+#define SLUICE_REINITIALISATION_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "engine/sph/loops/pair_loop-inl.hpp"
+#include "engine/sph/terms/terms-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sluice::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Numerator and divisor of eq. 10 for the clusters of a chunk.
+template <class Shape, typename T>
+void sum_reinitialisation(const SweepTask<T>& task) {
+  using B = Blocks<T>;
+  using V = typename B::V;
+  const typename B::D d;
+  const OriginShift<T> shift(task.constants->origin_cell_size);
+  constexpr SumBlocks blocks = kReinitialisationSums;
+  std::fill_n(task.sums, blocks.stride * task.to_fluid->places(), T{});
+  for (std::size_t c = 0; c < task.clusters; ++c) {
+    for (std::size_t part = 0; part < kCluster; part += B::i_count) {
+      const std::size_t slot = kCluster * (task.first_cluster + c) + part;
+      const V x_i = load_i(task.self.x + slot);
+      const V y_i = load_i(task.self.y + slot);
+      const V volume_i = load_i(task.self.volume + slot);
+      const V numerator_i = ShepardTerm::numerator(load_i(task.self.excess + slot), volume_i);
+      V excess = hn::Zero(d);
+      V weight = hn::Zero(d);
+      const auto add = [&]<Share kShare>(const PairList::Chunk& list,
+                                         const PairView<T>& other) HWY_ATTR {
+        for_each_pair(list, c, other, shift, x_i, y_i,
+                      [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t of_j) HWY_ATTR {
+                        const V w = Shape::value(d, hn::MulAdd(dx, dx, dy * dy));
+                        const V volume = load_j(other.volume + j);
+                        const V s = ShepardTerm::numerator(load_j(other.excess + j), volume);
+                        excess = hn::MulAdd(w, s, excess);
+                        weight = hn::MulAdd(w, volume, weight);
+                        if constexpr (kShare == Share::both) {
+                          const V minus_w = hn::Neg(w);
+                          subtract_from_j(place_of(task.sums, blocks.stride, list, n, of_j),
+                                          minus_w * numerator_i, minus_w * volume_i);
+                        }
+                      });
+      };
+      add.template operator()<Share::both>(*task.to_fluid, task.fluid);
+      if (task.to_wall != nullptr) {
+        add.template operator()<Share::i_alone>(*task.to_wall, task.wall);
+      }
+      T* const sums = task.sums + blocks.stride * c + part;
+      add_lanes(excess, sums + blocks.density);
+      add_lanes(weight, sums + blocks.x);
+    }
+  }
+}
+
+}  // namespace sluice::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
