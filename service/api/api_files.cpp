@@ -78,7 +78,7 @@ bool is_regular(const std::filesystem::path& path) {
 
 std::vector<std::filesystem::path> frames_of(const JobPaths& paths) {
   if (std::filesystem::is_symlink(paths.frames())) return {};
-  return paths.frame_files();
+  return paths.snapshot_files();
 }
 
 Response show_log(ApiContext& context, const RouteRequest& request) {

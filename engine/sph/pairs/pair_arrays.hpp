@@ -85,8 +85,14 @@ struct PairArrays {
   }
   [[nodiscard]] PairView<T> view() const {
     const T* psi = diffused.size() > 0 ? diffused.data() : excess.data();
-    return {x.data(),      y.data(),      u.data(), v.data(),
-            excess.data(), volume.data(), psi,      pressure_term.data()};
+    return {.x = x.data(),
+            .y = y.data(),
+            .u = u.data(),
+            .v = v.data(),
+            .excess = excess.data(),
+            .volume = volume.data(),
+            .diffused = psi,
+            .pressure_term = pressure_term.data()};
   }
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
