@@ -124,7 +124,7 @@ struct LaminarViscosityTerm {
 
 /// Wall law: the stress Cf/2 rho_0 |v| v on fluid that slides along a wall at rest, summed as the
 /// viscous stress above against the wall's particles, with the nu_i = Cf |v_i| h/(4 S) that makes
-/// the sum over wall and fluid that stress; S is stress_across_wall() of engine.cpp.
+/// the sum over wall and fluid that stress; S is stress_across_wall() of term_constants.cpp.
 template <typename T>
 struct WallShearTerm {
   T two_nu_by_speed;  ///< 2 nu_i/(c h) over |v_i|/c
