@@ -18,8 +18,8 @@ const Reference& lobovsky() {
 }
 
 std::string text_of(std::string_view name) {
-  for (const ReferenceText& file : kReferenceTexts) {
-    if (file.name == name) return std::string(file.text);
+  for (const auto& [stem, text] : kReferenceTexts) {
+    if (stem == name) return std::string(text);
   }
   throw std::runtime_error("not built in");
 }

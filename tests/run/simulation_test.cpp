@@ -94,10 +94,10 @@ TEST(Simulation, FramesGoOnCountingAfterARestart) {
   std::vector<std::uint64_t> indices;
   Simulation simulation(scene, {1, ""});
   while (!simulation.finished()) {
-    if (const auto index = simulation.due_frame()) {
+    if (const auto index = simulation.due_snapshot()) {
       indices.push_back(*index);
-      simulation.frame_written();
-      EXPECT_FALSE(simulation.due_frame());
+      simulation.snapshot_written();
+      EXPECT_FALSE(simulation.due_snapshot());
       simulation = Simulation(scene, {1, ""}, simulation.checkpoint());
     }
     simulation.step();
@@ -112,7 +112,7 @@ TEST(Simulation, AFrameThatWasNotWrittenBeforeTheCheckpointIsDueAfterIt) {
   const Scene scene = small_dam_break(choice);
   const Simulation simulation(scene, {1, ""});
   const Simulation resumed(scene, {1, ""}, simulation.checkpoint());
-  EXPECT_EQ(resumed.due_frame(), 0U);
+  EXPECT_EQ(resumed.due_snapshot(), 0U);
 }
 
 TEST(Simulation, RefusesACheckpointOfAnotherScene) {
