@@ -43,11 +43,13 @@ const Sensor* sensor_at(const Scene& scene, const Reference& reference, SensorKi
   return nullptr;
 }
 
-PressureMeasures measure(const Intervals& intervals, std::span<const double> averages) {
+PressureMeasures measure(const Reference& reference, std::span<const double> averages) {
+  const Intervals& intervals = reference.pressure_times;
+  const ReferenceMeasures& windows = reference.measures;
   PressureMeasures measures;
-  measures.impulse = integral(intervals, averages, kComparisonWindow);
-  measures.plateau = mean(intervals, averages, kPlateauWindow);
-  measures.second_rise = second_rise(intervals, averages);
+  measures.impulse = integral(intervals, averages, windows.comparison);
+  measures.plateau = mean(intervals, averages, windows.plateau);
+  measures.second_rise = second_rise(intervals, averages, windows.second_rise);
   return measures;
 }
 
@@ -73,7 +75,7 @@ PressureComparison weigh(PressurePair pair, const Scene& scene, const Reference&
                          double shift) {
   const auto error = [&](std::span<const double> averages) {
     return relative_l2(reference.pressure_times, averages, pair.reference->values,
-                       kComparisonWindow);
+                       reference.measures.comparison);
   };
   PressureComparison comparison;
   comparison.relative_l2_not_shifted =
@@ -87,10 +89,10 @@ PressureComparison weigh(PressurePair pair, const Scene& scene, const Reference&
   comparison.air_pressure = pair.sensor->air_pressure;
   comparison.reference = pair.reference->name;
   comparison.peak_statistics = pair.reference->peak;
-  comparison.simulation = measure(reference.pressure_times, averages);
-  comparison.simulation.arrival = first_passage(pair.curve, kArrivalLevel, 1.0);
-  comparison.simulation.peak = peak(pair.curve, kImpactWindow);
-  comparison.experiment = measure(reference.pressure_times, pair.reference->values);
+  comparison.simulation = measure(reference, averages);
+  comparison.simulation.arrival = first_passage(pair.curve, reference.measures.arrival, 1.0);
+  comparison.simulation.peak = peak(pair.curve, reference.measures.impact);
+  comparison.experiment = measure(reference, pair.reference->values);
   comparison.experiment.arrival = pair.reference->arrival;
   comparison.relative_l2 = error(averages);
   comparison.simulated = std::move(pair.curve);
@@ -112,7 +114,8 @@ std::optional<double> mean_of(const Comparison& comparison,
 void compare_pressures(Comparison& comparison, const Scene& scene,
                        std::vector<PressurePair> pairs) {
   if (pairs.empty()) return;
-  const auto arrival = first_passage(pairs.front().curve, kArrivalLevel, 1.0);
+  const auto arrival =
+      first_passage(pairs.front().curve, comparison.reference->measures.arrival, 1.0);
   if (arrival) comparison.shift = pairs.front().reference->arrival - *arrival;
   for (PressurePair& pair : pairs) {
     comparison.pressures.push_back(

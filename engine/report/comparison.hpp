@@ -13,15 +13,6 @@ namespace sluice {
 
 /// The filter time that pressures are compared with, s.
 inline constexpr double kComparisonTau = 0.002;
-/// The pressure that counts as the arrival of the surge, P.
-inline constexpr double kArrivalLevel = 0.05;
-/// Where pressures are compared, T.
-inline constexpr Window kComparisonWindow{2.3, 7.05};
-/// The impact: where the first peak is looked for, T.
-inline constexpr Window kImpactWindow{2.3, 5.0};
-/// The plateau between impact and second rise, T, ends included.
-inline constexpr Window kPlateauWindow{3.5 - 1e-9, 5.0 + 1e-9};
-
 /// What is read off one pressure series. Absent: the run does not reach that far, or nothing such
 /// happens in it.
 struct PressureMeasures {

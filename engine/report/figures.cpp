@@ -65,7 +65,8 @@ Chart front_chart(const Scene& scene, const Comparison& comparison) {
   Chart chart;
   chart.id = "front";
   chart.title = "Surge front";
-  chart.x = {std::string(kTimeLabel), 0.0, 3.0};
+  const Window axis = comparison.reference->measures.front_axis;
+  chart.x = {std::string(kTimeLabel), axis.from, axis.to};
   chart.y.label = "X = w/w₀";
   chart.lines.push_back(simulation_line(scaled(comparison.front->simulated)));
   chart.marks.push_back({"experiment", Ink::experiment, measured.time, measured.value, {}, {}, {}});
@@ -97,12 +98,14 @@ Chart level_chart(const LevelComparison& level, const Reference& reference, std:
 }
 
 /// The tests' percentiles of the first peak, drawn where the one test that is shown has its own.
-ChartMarks peak_marks(const PressureReference& sensor, std::span<const double> times) {
+ChartMarks peak_marks(const PressureReference& sensor, const Reference& reference) {
+  const auto times = reference.pressure_times.centers();
   std::size_t at = 0;
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (kImpactWindow.contains(times[k]) && sensor.values[k] > sensor.values[at]) at = k;
+    if (reference.measures.impact.contains(times[k]) && sensor.values[k] > sensor.values[at])
+      at = k;
   }
-  return {"peaks of 100 tests: median, 2.5–97.5 %",
+  return {fmt::format("peaks of {} tests: median, 2.5–97.5 %", reference.peak_tests),
           Ink::second,
           {times[at]},
           {sensor.peak.median},
@@ -120,7 +123,8 @@ Chart pressure_chart(const PressureComparison& pressure, const Comparison& compa
   chart.id = id_of("pressure", number);
   chart.title = fmt::format("Pressure at {}, {:g} mm above the floor", pressure.sensor,
                             pressure.height * 1e3);
-  chart.x = {std::string(kTimeLabel), 2.0, 8.0};
+  const Window axis = reference.measures.pressure_axis;
+  chart.x = {std::string(kTimeLabel), axis.from, axis.to};
   chart.y.label = "P = p/(ρ₀ g h₀)";
   chart.lines.push_back(simulation_line(pressure.simulated));
   if (comparison.shift)
@@ -130,7 +134,7 @@ Chart pressure_chart(const PressureComparison& pressure, const Comparison& compa
     const std::vector<double> x(times.begin(), times.end());
     chart.lines.push_back({"experiment, one test", Ink::experiment, x, one.values});
     if (one.band) chart.bands.push_back({"2.5–97.5 % of tests", x, one.band->low, one.band->high});
-    chart.marks.push_back(peak_marks(one, times));
+    chart.marks.push_back(peak_marks(one, reference));
   }
   fit_height(chart);
   return chart;

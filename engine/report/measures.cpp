@@ -8,8 +8,6 @@
 namespace sluice {
 namespace {
 
-constexpr Window kBeforeRise{5.0 - 1e-9, 5.65};
-constexpr Window kRise{5.65, 7.05};
 constexpr double kCrestReach = 0.4;
 constexpr double kLeastRise = 1.15;
 
@@ -146,17 +144,18 @@ std::optional<Peak> peak(const Curve& curve, Window window) {
   return best;
 }
 
-std::optional<Rise> second_rise(const Intervals& intervals, std::span<const double> values) {
-  const auto base = mean(intervals, values, kBeforeRise);
-  if (!base || !integral(intervals, values, kRise)) return std::nullopt;
+std::optional<Rise> second_rise(const Intervals& intervals, std::span<const double> values,
+                                const RiseWindows& windows) {
+  const auto base = mean(intervals, values, windows.base);
+  if (!base || !integral(intervals, values, windows.rise)) return std::nullopt;
   Curve curve;
   curve.time.assign(intervals.centers().begin(), intervals.centers().end());
   curve.value.assign(values.begin(), values.end());
-  const double top = highest(curve, kRise);
+  const double top = highest(curve, windows.rise);
   if (top < kLeastRise * *base) return std::nullopt;
-  const auto start = first_passage(curve, 0.5 * (*base + top), kRise.from);
+  const auto start = first_passage(curve, 0.5 * (*base + top), windows.rise.from);
   if (!start) return std::nullopt;
-  const double crest = highest(curve, {*start, std::min(*start + kCrestReach, kRise.to)});
+  const double crest = highest(curve, {*start, std::min(*start + kCrestReach, windows.rise.to)});
   const auto time = first_passage(curve, *base + 0.9 * (crest - *base), *start);
   if (!time) return std::nullopt;
   return Rise{*time, crest, *base};

@@ -83,12 +83,19 @@ struct Rise {
   double base = 0.0;    ///< level before the rise
 };
 
+/// Where a second rise is looked for.
+struct RiseWindows {
+  Window base;  ///< before it
+  Window rise;
+};
+
 /// Found on the averages over intervals, so that experiment and simulation are resolved alike:
-/// base, the mean over 5 < T < 5.65; start, the first passage of half the way from base to the
-/// highest value in 5.65 < T < 7.05; crest, the highest value from the start to 0.4 after it; time,
-/// the first passage of base + 0.9 (crest - base). Nothing when the values do not cover 5 < T
-/// < 7.05 or stay below 1.15 times the base. Gives 5.94 for P1 of the experiment's figures.
+/// base, the mean over its window; start, the first passage of half the way from base to the
+/// highest value in the rise's window; crest, the highest value from the start to 0.4 after it;
+/// time, the first passage of base + 0.9 (crest - base). Nothing when the values do not cover both
+/// windows or stay below 1.15 times the base.
 [[nodiscard]] std::optional<Rise> second_rise(const Intervals& intervals,
-                                              std::span<const double> values);
+                                              std::span<const double> values,
+                                              const RiseWindows& windows);
 
 }  // namespace sluice

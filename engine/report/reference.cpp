@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "engine/scene/model/vocabulary.hpp"
 #include "sluice/reference_texts.hpp"
 
 namespace sluice {
@@ -38,7 +37,7 @@ std::optional<PressureBand> read_band(const json& file, const std::string& name,
 std::vector<PressureReference> read_pressures(const json& file, std::size_t count) {
   std::vector<PressureReference> all;
   for (const auto& [name, height] : file.at("geometry_m").at("pressure_z").items()) {
-    const json& peak = file.at("peak_statistics_100_tests").at(name);
+    const json& peak = file.at("peak_statistics").at(name);
     PressureReference sensor;
     sensor.name = name;
     sensor.height = height.get<double>();
@@ -87,6 +86,29 @@ Curve read_front(const json& front) {
   return curve;
 }
 
+Window read_window(const json& window) {
+  return {window.at(0).get<double>(), window.at(1).get<double>()};
+}
+
+ReferenceMeasures read_measures(const json& file) {
+  // Ends that are a time of the figures belong to these windows.
+  constexpr double kIncluded = 1e-9;
+  ReferenceMeasures measures;
+  measures.arrival = file.at("arrival").get<double>();
+  measures.comparison = read_window(file.at("comparison"));
+  measures.impact = read_window(file.at("impact"));
+  measures.plateau = read_window(file.at("plateau"));
+  measures.plateau.from -= kIncluded;
+  measures.plateau.to += kIncluded;
+  measures.second_rise.base = read_window(file.at("second_rise").at("base"));
+  measures.second_rise.base.from -= kIncluded;
+  measures.second_rise.rise = read_window(file.at("second_rise").at("rise"));
+  measures.pictures = file.at("pictures").get<std::vector<double>>();
+  measures.front_axis = read_window(file.at("front_axis"));
+  measures.pressure_axis = read_window(file.at("pressure_axis"));
+  return measures;
+}
+
 Reference read_reference(const std::string& name, const json& file) {
   const json& geometry = file.at("geometry_m");
   Intervals pressure_times(file.at("event").at("t").get<std::vector<double>>());
@@ -104,12 +126,20 @@ Reference read_reference(const std::string& name, const json& file) {
           read_pressures(file, pressure_count),
           std::move(level_times),
           read_levels(file, level_count),
-          read_front(file.at("front"))};
+          read_front(file.at("front")),
+          file.at("peak_statistics").at("tests").get<int>(),
+          read_measures(file.at("measures"))};
 }
 
 bool about(double value, double expected) { return std::abs(value / expected - 1.0) <= 0.01; }
 
 }  // namespace
+
+std::string Reference::pressures_text() const {
+  if (pressures.empty()) return "no sensor";
+  if (pressures.size() == 1) return pressures.front().name;
+  return pressures.front().name + "-" + pressures.back().name;
+}
 
 Reference parse_reference(const std::string& name, const std::string& text) {
   try {
@@ -130,8 +160,7 @@ const std::vector<Reference>& references() {
   return all;
 }
 
-const Reference& reference_of(Experiment experiment) {
-  const std::string_view name = word_for(kExperimentWords, experiment);
+const Reference& reference_of(std::string_view name) {
   for (const Reference& reference : references()) {
     if (reference.name == name) return reference;
   }

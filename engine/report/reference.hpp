@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/report/measures.hpp"
@@ -39,6 +40,18 @@ struct LevelReference {
   std::vector<double> values;  ///< h/h0, mean over the tests, one average per interval
 };
 
+/// What is read off the pressures of an experiment and of its simulation, T and P.
+struct ReferenceMeasures {
+  double arrival = 0.0;  ///< the pressure that counts as the arrival of the surge, P
+  Window comparison;     ///< where pressures are compared
+  Window impact;         ///< where the first peak is looked for
+  Window plateau;        ///< between impact and second rise, ends included
+  RiseWindows second_rise;
+  std::vector<double> pictures;  ///< times that pictures are shown of
+  Window front_axis;             ///< of the front's plot
+  Window pressure_axis;          ///< of the pressures' plots
+};
+
 /// Figures of a dam-break experiment, dimensionless with its own h0, rho and g.
 struct Reference {
   std::string name;  ///< name of its file
@@ -52,7 +65,12 @@ struct Reference {
   std::vector<PressureReference> pressures;
   Intervals level_times;
   std::vector<LevelReference> levels;
-  Curve front;  ///< T, (w - w0)/h0
+  Curve front;         ///< T, (w - w0)/h0
+  int peak_tests = 0;  ///< behind the statistics of peaks
+  ReferenceMeasures measures;
+
+  /// The pressure sensors in words: "P1-P4".
+  [[nodiscard]] std::string pressures_text() const;
 };
 
 /// Reads a reference. `text` is a file of schemas/references; its layout is that of the one there.
@@ -62,8 +80,9 @@ struct Reference {
 /// The references that are built into the program.
 [[nodiscard]] const std::vector<Reference>& references();
 
-/// The built-in reference of this name. Throws std::logic_error when the program has lost it.
-[[nodiscard]] const Reference& reference_of(Experiment experiment);
+/// The built-in reference of this name, one of kExperimentWords. Throws std::logic_error when the
+/// program has lost it.
+[[nodiscard]] const Reference& reference_of(std::string_view name);
 
 /// The reference whose tank and column have the shape of the scene's, whatever their size: tank
 /// width and column width in column heights within 1 %. Nothing for a scene without gravity

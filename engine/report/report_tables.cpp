@@ -89,7 +89,9 @@ Table pressure_table(const Comparison& comparison) {
             [](const auto& m) { return m.arrival; });
   add_peaks(rows);
   rows.both("impulse, P T", [](const auto& m) { return m.impulse; });
-  rows.both("plateau (T 3.5-5), P", [](const auto& m) { return m.plateau; });
+  const Window plateau = comparison.reference->measures.plateau;
+  rows.both(fmt::format("plateau (T {:.4g}-{:.4g}), P", plateau.from, plateau.to),
+            [](const auto& m) { return m.plateau; });
   rows.both("second rise, T", [](const auto& m) { return rise_time(m.second_rise); });
   rows.both("second rise, P", [](const auto& m) { return rise_height(m.second_rise); });
   table.rows = rows.take();
@@ -136,10 +138,11 @@ void add_comparison_lines(std::vector<std::string>& lines, const Comparison& com
       "T = t sqrt(g/h0), one T is {:.4f} s; pressures: time filter tau = {:g} ms, dry counts as P "
       "= 0, shifted by {} T, which makes the first sensor arrive as measured; averages over the "
       "figure's intervals, compared over {:g} < T < {:g}",
-      comparison.time_unit, comparison.tau * 1e3, shift_text(comparison), kComparisonWindow.from,
-      kComparisonWindow.to));
-  lines.push_back(fmt::format("mean relative L2 of P1-P4: {} shifted by {} T, {} not shifted",
-                              cell(comparison.mean_relative_l2), shift_text(comparison),
+      comparison.time_unit, comparison.tau * 1e3, shift_text(comparison),
+      reference.measures.comparison.from, reference.measures.comparison.to));
+  lines.push_back(fmt::format("mean relative L2 of {}: {} shifted by {} T, {} not shifted",
+                              reference.pressures_text(), cell(comparison.mean_relative_l2),
+                              shift_text(comparison),
                               cell(comparison.mean_relative_l2_not_shifted)));
 }
 

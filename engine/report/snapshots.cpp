@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Times of the pictures in the experiment's paper, T.
-constexpr std::array kPaperTimes{2.0, 5.9, 7.8};
 
 std::optional<double> time_of_highest_pressure(const Report& report) {
   std::optional<double> at;
@@ -54,9 +53,11 @@ std::vector<double> picture_times(const Report& report, double last) {
   if (!report.scene.pictures.empty()) return report.scene.pictures;
   if (report.comparison) {
     std::vector<double> times;
-    for (const double time : kPaperTimes) times.push_back(time * report.comparison->time_unit);
+    for (const double time : report.comparison->reference->measures.pictures) {
+      times.push_back(time * report.comparison->time_unit);
+    }
     // A snapshot counts for a time that it comes a little before.
-    if (times.back() <= last + 0.1 * report.comparison->time_unit) return times;
+    if (!times.empty() && times.back() <= last + 0.1 * report.comparison->time_unit) return times;
   }
   std::vector<double> times{0.0, last / 3.0, last * 2.0 / 3.0, last};
   const auto impact = time_of_highest_pressure(report);

@@ -148,9 +148,11 @@ std::vector<double> ramp(const Intervals& intervals, double start, double length
   return values;
 }
 
+constexpr RiseWindows kWindows{{5.0 - 1e-9, 5.65}, {5.65, 7.05}};
+
 TEST(SecondRise, OfARampIsAtNineTenthsOfIt) {
   const Intervals intervals(range(2.0, 0.1, 51));
-  const auto rise = second_rise(intervals, ramp(intervals, 6.2, 0.4, 1.0));
+  const auto rise = second_rise(intervals, ramp(intervals, 6.2, 0.4, 1.0), kWindows);
   ASSERT_TRUE(rise);
   EXPECT_NEAR(rise->base, 0.6, 1e-12);
   EXPECT_NEAR(rise->height, 1.0, 1e-12);
@@ -161,7 +163,7 @@ TEST(SecondRise, IsTheFirstCrestAndNotALaterSpike) {
   const Intervals intervals(range(2.0, 0.1, 51));
   auto values = ramp(intervals, 6.0, 0.2, 1.0);
   values.back() = 1.2;  // T = 7.0, long after the crest, half way mark 0.9
-  const auto rise = second_rise(intervals, values);
+  const auto rise = second_rise(intervals, values, kWindows);
   ASSERT_TRUE(rise);
   EXPECT_NEAR(rise->height, 1.0, 1e-12);
   EXPECT_NEAR(rise->time, 6.18, 1e-9);
@@ -169,10 +171,10 @@ TEST(SecondRise, IsTheFirstCrestAndNotALaterSpike) {
 
 TEST(SecondRise, IsAbsentFromALevelSeriesAndFromARunThatEndsBefore) {
   const Intervals intervals(range(2.0, 0.1, 51));
-  EXPECT_FALSE(second_rise(intervals, std::vector<double>(intervals.size(), 0.6)));
+  EXPECT_FALSE(second_rise(intervals, std::vector<double>(intervals.size(), 0.6), kWindows));
   auto values = ramp(intervals, 6.2, 0.4, 1.0);
   values[48] = kNan;
-  EXPECT_FALSE(second_rise(intervals, values));
+  EXPECT_FALSE(second_rise(intervals, values, kWindows));
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ TEST(References, ShowTheSecondRiseOfTheExperimentNearSix) {
   // "At about T = 6, there is a slight pressure rise in the experimental data."
   const Reference& reference = lobovsky();
   for (const PressureReference& sensor : reference.pressures) {
-    const auto rise = second_rise(reference.pressure_times, sensor.values);
+    const auto rise =
+        second_rise(reference.pressure_times, sensor.values, reference.measures.second_rise);
     ASSERT_TRUE(rise) << sensor.name;
     EXPECT_NEAR(rise->time, 5.95, 0.05) << sensor.name;
   }
@@ -65,7 +66,7 @@ TEST(References, DifferBetweenTheEventAndTheMedianOfTheTestsByNinePercentAtP2) {
   const auto file = nlohmann::json::parse(text_of("lobovsky2014_h300"));
   const auto median = file.at("P2_band").at("median").get<std::vector<double>>();
   const auto distance = relative_l2(reference.pressure_times, median, reference.pressures[1].values,
-                                    kComparisonWindow);
+                                    reference.measures.comparison);
   EXPECT_NEAR(*distance, 0.09, 0.005);
 }
 

@@ -16,7 +16,9 @@ import sys
 import tempfile
 
 program, root = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-FROM, TO, ARRIVAL = 2.3, 7.05, 0.05
+reference = json.loads((root / "schemas/references/lobovsky2014_h300.json").read_text(encoding="utf-8"))
+FROM, TO = reference["measures"]["comparison"]
+ARRIVAL = reference["measures"]["arrival"]
 
 
 def sluice(*arguments):
@@ -91,7 +93,6 @@ def check(folder, example, figures):
     print(f"{example}: {len(curves)} sensors, shift {shift:+.4f} T, mean error {comparison['mean_relative_l2']:.4f}")
 
 
-reference = json.loads((root / "schemas/references/lobovsky2014_h300.json").read_text(encoding="utf-8"))
 with tempfile.TemporaryDirectory() as name:
     for case in ("dambreak", "dambreak-paper"):
         check(pathlib.Path(name), case, reference)

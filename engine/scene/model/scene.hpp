@@ -10,6 +10,7 @@
 #include "engine/scene/model/scheme.hpp"
 #include "engine/space/vec.hpp"
 #include "engine/sph/method/method.hpp"
+#include "sluice/experiment_words.hpp"
 
 namespace sluice {
 
@@ -95,9 +96,6 @@ struct Scales {
   double width = 0.0;   ///< w0, m
 };
 
-/// An experiment whose figures are built into the program, schemas/references.
-enum class Experiment { lobovsky2014_h300 };
-
 enum class ReferenceKind {
   experiment,  ///< a built-in one
   series,      ///< the scene brings its own curves
@@ -121,7 +119,7 @@ struct ReferenceCurve {
 /// What a run's series are compared with when they are reported. It changes nothing in the run.
 struct SceneReference {
   ReferenceKind kind = ReferenceKind::none;
-  Experiment experiment = Experiment::lobovsky2014_h300;
+  std::string_view experiment = kExperimentWords.front().word;  ///< one of kExperimentWords
   std::string title;
   std::string citation;
   ReferenceUnits units = ReferenceUnits::si;

@@ -89,10 +89,6 @@ inline constexpr Words<SensorKind, 6> kSensorWords{{
      "the time at which a fluid particle first comes within 1.5 particle distances of a point"},
 }};
 
-inline constexpr Words<Experiment, 1> kExperimentWords{{
-    {"lobovsky2014_h300", Experiment::lobovsky2014_h300,
-     "dam break of Lobovsky et al. 2014, column 300 mm high"},
-}};
 inline constexpr Words<ReferenceKind, 3> kReferenceWords{{
     {"experiment", ReferenceKind::experiment, "built into the program"},
     {"series", ReferenceKind::series, "curves that stand here"},
