@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/checks.hpp"
+#include "cli/man_page.hpp"
 #include "cli/usage_text.hpp"
 #include "cli/verbs.hpp"
 #include "engine/run/build_id.hpp"
@@ -89,6 +90,15 @@ void add_version(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("version", "Print the program's version, as --version does");
   verb->footer("Example: sluice version");
   verb->callback([] { fmt::print("sluice {}\n", build_id()); });
+}
+
+void add_man(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("man", "Print the manual page");
+  verb->footer("Example: sluice man | man -l -");
+  verb->callback([&app] {
+    const std::string text = man_page(app);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+  });
 }
 
 void add_completion(CLI::App& app) {

@@ -30,10 +30,10 @@ namespace {
 
 // Verbs in the order of the help.
 constexpr std::array kVerbs{
-    &add_run,        &add_validate, &add_plan,      &add_inspect,   &add_sensors, &add_export,
-    &add_report,     &add_study,    &add_stability, &add_serve,     &add_submit,  &add_list,
-    &add_show,       &add_watch,    &add_pause,     &add_resume,    &add_cancel,  &add_delete,
-    &add_checkpoint, &add_help,     &add_version,   &add_completion};
+    &add_run,        &add_validate, &add_plan,      &add_inspect,    &add_sensors, &add_export,
+    &add_report,     &add_study,    &add_stability, &add_serve,      &add_submit,  &add_list,
+    &add_show,       &add_watch,    &add_pause,     &add_resume,     &add_cancel,  &add_delete,
+    &add_checkpoint, &add_help,     &add_version,   &add_completion, &add_man};
 
 int fail(int code, std::string_view message) {
   if (!message.empty()) std::fputs(fmt::format("sluice: {}\n", message).c_str(), stderr);
@@ -60,7 +60,7 @@ int flushed(int code) {
 /// SLUICE_SIMD speaks for the whole program and, through its environment, for all that it starts.
 /// Who only asks what the program is or can do is answered all the same.
 void take_default_simd_target(const CLI::App& app) {
-  for (const char* const verb : {"help", "version", "completion"}) {
+  for (const char* const verb : {"help", "version", "completion", "man"}) {
     if (app.got_subcommand(verb)) return;
   }
   const char* const wanted = std::getenv("SLUICE_SIMD");

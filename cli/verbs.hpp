@@ -56,5 +56,6 @@ void add_stability(CLI::App& app);
 void add_help(CLI::App& app);
 void add_version(CLI::App& app);
 void add_completion(CLI::App& app);
+void add_man(CLI::App& app);
 
 }  // namespace sluice

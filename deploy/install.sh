@@ -25,6 +25,10 @@ fi
 cmake --build --preset release --target sluice
 
 install -D -m 755 build/release/cli/sluice "$root/usr/local/bin/sluice"
+share=$root/usr/local/share
+install -d -m 755 "$share/man/man1" "$share/bash-completion/completions"
+build/release/cli/sluice man >"$share/man/man1/sluice.1"
+build/release/cli/sluice completion bash >"$share/bash-completion/completions/sluice"
 install -D -m 644 deploy/sluice.service "$root/etc/systemd/system/sluice.service"
 token=$root/etc/sluice/token
 if [[ ! -e $token ]]; then

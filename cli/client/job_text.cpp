@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/colour.hpp"
 #include "cli/json_text.hpp"
 
 namespace sluice {
@@ -79,10 +80,11 @@ std::optional<Progress> progress_of(const Json& job) {
 }
 
 std::string state_text(const Json& job) {
-  std::string text = text_at(job, "state");
+  const std::string state = text_at(job, "state");
+  std::string text = in_colour_of(state, state);
   const std::string stop = text_at(job, "stop_requested");
   const double attempts = number_or(job, "attempts", 0.0);
-  if (text == "running" && attempts > 1.0) {
+  if (state == "running" && attempts > 1.0) {
     text += fmt::format(", attempt {}", count_at(job, "attempts"));
   }
   if (!stop.empty()) text += fmt::format(", asked to {}", stop);
@@ -145,9 +147,11 @@ std::string table_text(const Json& jobs) {
   for (const Json& job : jobs) {
     const std::string label = text_at(job, "label");
     const std::string why = why_text(job);
-    text += fmt::format("{:<21} {:<9} {:>8} {:<19} {}{}{}\n", text_at(job, "id"),
-                        text_at(job, "state"), percent_text(job), time_text(job, "created_at"),
-                        text_at(job, "name"), label.empty() ? "" : fmt::format(" [{}]", label),
+    const std::string state = text_at(job, "state");
+    text += fmt::format("{:<21} {} {:>8} {:<19} {}{}{}\n", text_at(job, "id"),
+                        in_colour_of(state, fmt::format("{:<9}", state)), percent_text(job),
+                        time_text(job, "created_at"), text_at(job, "name"),
+                        label.empty() ? "" : fmt::format(" [{}]", label),
                         why.empty() ? "" : fmt::format(": {}", why));
   }
   return text;

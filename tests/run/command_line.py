@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import unittest
@@ -130,6 +131,30 @@ class Completion(Sandbox):
         self.assertEqual(self.completed("report", "job", "--format", "a"), ["apng"])
         self.assertEqual(self.completed("run", "--folder", ""), [])
         self.assertEqual(self.completed("run", "q"), [])
+
+
+class ManualPage(Sandbox):
+    def test_has_every_verb_with_its_options_and_every_exit_code(self):
+        page = self.expect(0, "man").stdout
+        verbs = re.findall("^  ([a-z]+) ", self.expect(0, "help").stdout, re.MULTILINE)
+        self.assertGreater(len(verbs), 20)
+        for verb in verbs:
+            self.assertRegex(page, rf"(?m)^\.SS sluice {verb}\b")
+            for option in re.findall(r"^  (?:-\w,)?--([a-z-]+)", self.expect(0, "help", verb).stdout, re.MULTILINE):
+                if option != "help":
+                    self.assertIn("\\-\\-" + option.replace("-", "\\-"), page, verb)
+        for code in (0, 2, 7, 13, 85):
+            self.assertIn(f"\\fB{code}\\fR", page)
+
+    def test_is_text_that_troff_understands(self):
+        page = self.expect(0, "man").stdout
+        for line in page.splitlines():
+            if line.startswith((".", "'")):
+                self.assertRegex(line, r"^\.(TH|SH|SS|TP|PP|nf|fi)( |$)")
+        if shutil.which("groff"):
+            done = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z"], input=page, text=True, capture_output=True,
+                                  check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 class Folders(Sandbox):

@@ -144,6 +144,25 @@ class Acts(Case):
         self.expect(DONE, "delete", jobs[3], "--server", server.url)
         self.assertEqual([job["id"] for job in server.ask("GET", "/v1/jobs").json()["jobs"]], [jobs[0]])
 
+    def test_states_have_colours_on_a_terminal_that_shows_them(self):
+        server = self.serve()
+        server.wait_for(server.submit(scene(0.02)), "completed")
+
+        def listed(**variables):
+            inner, outer = pty.openpty()
+            process = subprocess.Popen([client_program.PROGRAM, "list", "--server", server.url], stdin=subprocess.DEVNULL,
+                                       stdout=outer, env={**environment(), **variables})
+            self.assertEqual(process.wait(), DONE)
+            os.close(outer)
+            said = os.read(inner, 4096).decode()
+            os.close(inner)
+            return said
+
+        self.assertIn("\x1b[32mcompleted\x1b[0m", listed(TERM="xterm"))
+        self.assertNotIn("\x1b", listed(TERM="xterm", NO_COLOR="1"))
+        self.assertNotIn("\x1b", listed(TERM="dumb"))
+        self.assertNotIn("\x1b", self.expect(DONE, "list", "--server", server.url).stdout)
+
     def test_each_job_is_taken_once_and_last_is_what_it_was_at_the_beginning(self):
         server = self.serve()
         at = ("--server", server.url)
