@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
+#include <tuple>
 
 #include "engine/sph/threads/new_thread.hpp"
 #include "service/http/http_response.hpp"
@@ -30,6 +32,12 @@ double seconds_between(HttpConnection::Clock::time_point from,
 
 std::runtime_error system_failure(std::string_view what) {
   return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
+}
+
+/// Without the port. Views the connection's own text.
+std::string_view address_of(const HttpConnection& connection) {
+  const std::string_view peer = connection.peer();
+  return peer.substr(0, peer.rfind(':'));
 }
 
 }  // namespace
@@ -109,11 +117,11 @@ void HttpGatherer::accept_all() {
     FileDescriptor socket = accept_from(listener_.socket);
     if (socket.get() < 0) {
       if (errno == EINTR || errno == ECONNABORTED) continue;
-      // Without descriptors left, the one that has waited longest makes room.
-      if (errno == EMFILE || errno == ENFILE) close_longest_waiting();
+      // Without descriptors left, one that waits makes room.
+      if (errno == EMFILE || errno == ENFILE) make_room();
       return;
     }
-    if (open_connections() >= options_.connections) close_longest_waiting();
+    if (open_connections() >= options_.connections) make_room();
     if (open_connections() >= options_.connections) continue;
     std::string peer = peer_name(socket.get());
     admit(std::make_unique<HttpConnection>(std::move(socket), std::move(peer), Clock::now()));
@@ -141,8 +149,14 @@ HttpGatherer::Place HttpGatherer::longest_waiting() {
   });
 }
 
-void HttpGatherer::close_longest_waiting() {
-  if (const Place place = longest_waiting(); place != waiting_.end()) cut(place);
+void HttpGatherer::make_room() {
+  std::map<std::string_view, int> shares;
+  for (const auto& [socket, connection] : waiting_) ++shares[address_of(*connection)];
+  const auto place = std::ranges::min_element(waiting_, {}, [&](const auto& entry) {
+    const HttpConnection& one = *entry.second;
+    return std::tuple(-shares[address_of(one)], !one.answer(), one.since());
+  });
+  if (place != waiting_.end()) cut(place);
 }
 
 void HttpGatherer::take_back() {

@@ -59,7 +59,8 @@ class HttpGatherer {
   void close_late(Clock::time_point now);
   void cut_beyond_memory();
   [[nodiscard]] Place longest_waiting();
-  void close_longest_waiting();
+  /// That of the address with the most connections, so that one who opens many closes his own.
+  void make_room();
   [[nodiscard]] int open_connections() const;
 
   const HttpOptions options_;

@@ -10,8 +10,8 @@ namespace sluice::test {
 /// A client that says exactly what it is told to.
 class RawClient {
  public:
-  /// Connects to 127.0.0.1.
-  explicit RawClient(int port);
+  /// Connects to 127.0.0.1, from `address`.
+  explicit RawClient(int port, const char* address = "127.0.0.1");
 
   /// Sends all; false when the server took no more.
   bool send(std::string_view bytes);

@@ -204,6 +204,23 @@ TEST(HttpServerThreads, ClosesTheOneThatHasWaitedLongestWhenThereAreTooMany) {
   EXPECT_EQ(silent.front()->rest(), "") << "closed";
 }
 
+TEST(HttpServerThreads, OneAddressWithManyConnectionsClosesItsOwn) {
+  HttpOptions options = quick_options();
+  options.arrival_seconds = 600;
+  options.connections = 8;
+  Server server(options);
+  RawClient alone(server.http.port());
+  alone.send("GET /alone HTTP/1.1\r\nHost: localhost\r\n");
+  std::vector<std::unique_ptr<RawClient>> crowd;
+  for (int n = 0; n < 40; ++n) {
+    crowd.push_back(std::make_unique<RawClient>(server.http.port(), "127.0.0.2"));
+    crowd.back()->send("G");
+  }
+  EXPECT_EQ(crowd.front()->rest(), "") << "closed";
+  alone.send("Connection: close\r\n\r\n");
+  EXPECT_EQ(text_of(alone.rest()), "GET /alone ") << "who has waited longest, but alone";
+}
+
 TEST(HttpServerThreads, GivesUpOnClientsThatDoNotTakeTheirAnswer) {
   Server server;
   RawClient client(server.http.port());
