@@ -11,59 +11,10 @@
 #include "engine/store/disk/file_system.hpp"
 #include "engine/store/files/checkpoint.hpp"
 #include "engine/store/files/checkpoint_io.hpp"
+#include "engine/store/files/folder_lock.hpp"
+#include "engine/store/files/job_paths.hpp"
 
 namespace sluice {
-
-/// The names of all files of a job. Needs no lock and touches no disk.
-class JobPaths {
- public:
-  explicit JobPaths(std::filesystem::path root) : root_(std::move(root)) {}
-
-  [[nodiscard]] const std::filesystem::path& root() const { return root_; }
-  [[nodiscard]] std::filesystem::path scene() const { return root_ / "scene.json"; }
-  [[nodiscard]] std::filesystem::path lock() const { return root_ / "lock"; }
-  [[nodiscard]] std::filesystem::path log() const { return root_ / "log.jsonl"; }
-  [[nodiscard]] std::filesystem::path series() const { return root_ / "series.h5"; }
-  [[nodiscard]] std::filesystem::path outcome() const { return root_ / "outcome.json"; }
-  [[nodiscard]] std::filesystem::path report() const { return root_ / "report.json"; }
-  static constexpr std::uint64_t kLargestReport = 1 << 20;  ///< bytes; no report.json has more
-  [[nodiscard]] std::filesystem::path report_markdown() const { return root_ / "report.md"; }
-  [[nodiscard]] std::filesystem::path report_html() const { return root_ / "report.html"; }
-  [[nodiscard]] std::filesystem::path frames() const { return root_ / "frames"; }
-  [[nodiscard]] std::filesystem::path frame(std::uint64_t index) const;
-  [[nodiscard]] std::filesystem::path checkpoint(std::uint64_t step) const;
-
-  /// Checkpoint files by name, newest first; none of them has been read. `.bad` ones are left out.
-  [[nodiscard]] std::vector<std::filesystem::path> checkpoints() const;
-  /// Checkpoints that were put aside as unusable.
-  [[nodiscard]] std::vector<std::filesystem::path> bad_checkpoints() const;
-  /// Snapshot files, oldest first.
-  [[nodiscard]] std::vector<std::filesystem::path> snapshot_files() const;
-
- private:
-  std::filesystem::path root_;
-};
-
-/// Sole use of a job folder: an flock on its lock file for the life of the holder. The system frees
-/// it when the process ends, however it ends. The file holds the holder's process number, for
-/// people; it is empty again at the end of the holder's life, but not after a kill.
-class FolderLock {
- public:
-  /// Throws StorageError: locked, naming the holder's process; unwritable; not_ours when the lock
-  /// file is a symbolic link or no regular file.
-  explicit FolderLock(const std::filesystem::path& path);
-  FolderLock(FolderLock&&) noexcept = default;
-  FolderLock& operator=(FolderLock&&) noexcept = default;
-  ~FolderLock();
-
-  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-  /// Whether the file at `path` is the one that is locked. Throws StorageError when the system
-  /// cannot tell.
-  [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
-
- private:
-  FileDescriptor descriptor_;
-};
 
 /// A checkpoint to go on from and what was put aside on the way to it.
 struct Restored {

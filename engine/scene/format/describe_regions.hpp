@@ -1,0 +1,137 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "engine/scene/format/describe_ranges.hpp"
+#include "engine/scene/model/scene.hpp"
+#include "engine/scene/model/vocabulary.hpp"
+
+namespace sluice {
+
+// Part of the scene format (describe.hpp): shapes, fluid, tank, gate.
+
+template <class Archive>
+void describe(Archive& a, Rectangle& shape) {
+  a.vector(
+      "corner", shape.corner,
+      {.about = "lower left corner", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.vector("size", shape.size,
+           {.about = "width and height", .unit = "m", .range = kLength, .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, Circle& shape) {
+  a.vector("center", shape.center,
+           {.about = "center", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.number("radius", shape.radius,
+           {.about = "radius", .unit = "m", .range = kLength, .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, Ellipse& shape) {
+  a.vector("center", shape.center,
+           {.about = "center", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.vector("semi_axes", shape.semi_axes,
+           {.about = "half the width and half the height",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, Polygon& shape) {
+  a.points("points", shape.points,
+           {.about = "corners in order, either way round; the last joins the first",
+            .min = 3,
+            .max = kMaxPolygonPoints,
+            .need = Need::required},
+           {.about = "corner", .unit = "m", .range = kCoordinate});
+}
+
+/// A shape, and in the same object the keys that `more` describes.
+template <class Archive, class More>
+void describe_shape(Archive& a, Shape& shape, const More& more) {
+  a.choice("shape", kShapeWords, kind_of(shape), "what the region looks like",
+           [&](auto& branch, ShapeKind kind) {
+             if (kind_of(shape) != kind) shape = shape_of(kind);
+             std::visit([&](auto& each) { describe(branch, each); }, shape);
+             more(branch);
+           });
+}
+
+template <class Archive>
+void describe(Archive& a, Shape& shape) {
+  describe_shape(a, shape, [](auto&) {});
+}
+
+template <class Archive>
+void describe(Archive& a, FluidRegion& region) {
+  describe_shape(a, region.shape, [&](auto& branch) {
+    branch.vector("velocity", region.velocity,
+                  {.about = "velocity at the start", .unit = "m/s", .range = from(-1e6, 1e6)});
+    branch.number("strain_rate", region.strain_rate,
+                  {.about = "A of a flow A (x, -y) about the middle of the region, on top of its "
+                            "velocity",
+                   .unit = "1/s",
+                   .range = from(-1e9, 1e9),
+                   .otherwise = "none"});
+    branch.number("rotation_rate", region.rotation_rate,
+                  {.about = "w of a rotation w (-y, x) about the middle of the region, on top of "
+                            "its velocity",
+                   .unit = "1/s",
+                   .range = from(-1e9, 1e9),
+                   .otherwise = "none"});
+    branch.word("pressure", kInitialPressureWords, region.pressure,
+                {.about = "pressure at the start"});
+  });
+}
+
+template <class Archive>
+void describe(Archive& a, Tank& tank) {
+  a.number("width", tank.width,
+           {.about = "inner width: walls stand at x = 0 and x = width",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+  a.number("height", tank.height,
+           {.about = "inner height: the floor lies at y = 0, the walls end at y = height",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+  a.flag("open_top", tank.open_top, {.about = "false: with a lid at y = height"});
+}
+
+template <class Archive>
+void describe(Archive& a, Gate& gate) {
+  a.number("x", gate.x,
+           {.about = "the side that the fluid touches; the gate stands on the floor to its right",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+  std::optional<double> given;
+  if (gate.height > 0) given = gate.height;
+  a.number("height", given,
+           {.about = "height before it is lifted",
+            .unit = "m",
+            .range = kLength,
+            .otherwise = "the tank's height"});
+  gate.height = given.value_or(0.0);
+  a.number("speed", gate.speed,
+           {.about = "speed at which it is lifted from t = 0 on",
+            .unit = "m/s",
+            .range = above(0, 1e6),
+            .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, Box& box) {
+  a.vector(
+      "min", box.min,
+      {.about = "lower left corner", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.vector(
+      "max", box.max,
+      {.about = "upper right corner", .unit = "m", .range = kCoordinate, .need = Need::required});
+}
+
+}  // namespace sluice
