@@ -94,9 +94,12 @@ void leave_report(const JobFolder& folder, const Outcome& outcome, double patien
                   const std::function<bool()>& hurried) {
   if (outcome.exit_code != ExitCode::done) return;
   try {
-    folder.require_held();
     insist(
-        patience, [&] { publish_report(folder.paths().root(), folder.paths().root()); },
+        patience,
+        [&] {
+          folder.require_held();
+          publish_report(folder.paths().root(), folder.paths().root());
+        },
         [&folder](const StorageError& error, double wait) {
           std::fputs(fmt::format("sluice: no report yet, next try in {:.1f} s: {}\n", wait,
                                  told_outside(folder.name(), error).what())

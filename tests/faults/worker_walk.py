@@ -19,7 +19,7 @@ SCENE = {
     "output": {"frames": {"interval": 0.05}}, "end_time": 0.1}
 LATER = {**SCENE, "end_time": 0.15}
 HANG = 300  # s: only so that a hang ends as a failure
-DONE, UNREADABLE_SCENE, STORAGE_FAILURE, CHECKPOINTED = 0, 3, 5, 85
+DONE, UNREADABLE_SCENE, STORAGE_FAILURE, CHECKPOINTED = 0, 2, 5, 85
 RUN = ("run", "--threads", "1", "--progress", "json", "--checkpoint-every", "40")
 
 # Name, what is there before, the command in a folder that holds scene.json, later.json and the job,
