@@ -87,9 +87,27 @@ Reference made_up_reference() {
   wall.values = interval_averages(curve_of(impact), pressure_times);
   wall.peak = {1.0, 0.5, 1.5};
   LevelReference level{"H1", 0.3, std::vector<double>(level_times.size(), 0.5)};
-  return {"made_up", "",          "",      0.3,
-          0.6,       1.61,        0.6,     pressure_times,
-          {wall},    level_times, {level}, Curve{{0.0, 1.0, 2.0}, {0.0, 1.5, 3.0}}};
+  return {.name = "made_up",
+          .title = "",
+          .citation = "",
+          .height = 0.3,
+          .width = 0.6,
+          .tank_width = 1.61,
+          .tank_height = 0.6,
+          .pressure_times = pressure_times,
+          .pressures = {wall},
+          .level_times = level_times,
+          .levels = {level},
+          .front = Curve{{0.0, 1.0, 2.0}, {0.0, 1.5, 3.0}},
+          .peak_tests = 1,
+          .measures = {.arrival = 0.05,
+                       .comparison = {2.3, 7.05},
+                       .impact = {2.3, 5.0},
+                       .plateau = {3.5 - 1e-9, 5.0 + 1e-9},
+                       .second_rise = {{5.0 - 1e-9, 5.65}, {5.65, 7.05}},
+                       .pictures = {2.0, 5.9, 7.8},
+                       .front_axis = {0.0, 3.0},
+                       .pressure_axis = {2.0, 8.0}}};
 }
 
 Comparison compare_with_delay(double delay, double factor) {

@@ -425,7 +425,7 @@ class Watching(Case):
         while len(re.findall(r"\r\[[#.]+\] +[0-9.]+ % t ", text)) < 2:
             self.assertTrue(select.select([inner], [], [], 60)[0], text)
             text += os.read(inner, 65536).decode()
-        self.assertIn("running\r\n", text)
+        self.assertRegex(text, r"running(\x1b\[0m)?\r\n")
         server.ask("POST", f"/v1/jobs/{job}/cancel")
         self.assertEqual(watch.wait(), JOB_CANCELLED)
         try:
