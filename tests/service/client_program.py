@@ -434,7 +434,7 @@ class Watching(Case):
         except OSError:
             pass  # its other end is closed
         last = text.replace("\r\n", "\n").split("\n")
-        self.assertTrue(any(line.split("\r")[-1].startswith("cancelled") for line in last), text)
+        self.assertTrue(any(re.sub(r"\x1b\[[0-9]+m", "", line.split("\r")[-1]).startswith("cancelled") for line in last), text)
 
 
 class Retries(Case):
