@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,23 +16,13 @@
 namespace sluice {
 namespace {
 
-/// In the child, which has no other thread: nothing here allocates.
-[[noreturn]] void become_run(char* const* arguments, int output, pid_t parent,
-                             const sigset_t& mask) {
-  // A group of its own: what a terminal sends to the study's is the study's to pass on.
-  ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != parent) ::_exit(128 + SIGTERM);
-  ::dup2(output, STDOUT_FILENO);
-  ::dup2(output, STDERR_FILENO);
-  ::sigprocmask(SIG_SETMASK, &mask, nullptr);
-  ::execv("/proc/self/exe", arguments);
-  ::_exit(127);
+int exit_code_by(const ProcessEnd& end) {
+  return end.exit_code >= 0 ? end.exit_code : 128 + end.signal;
 }
 
 }  // namespace
 
-RunPool::RunPool() {
+RunPool::RunPool(Executor& executor) : executor_(executor) {
   // A reader of what is said who went away ends no run.
   std::signal(SIGPIPE, SIG_IGN);
   ::sigemptyset(&watched_);
@@ -63,29 +51,30 @@ void RunPool::start(std::size_t number, const std::filesystem::path& folder,
     throw std::runtime_error(
         fmt::format("cannot write {}: {}", log.string(), std::strerror(errno)));
   }
-  std::string words[] = {
-      "sluice",     "run", folder.string(), "--threads", fmt::format("{}", threads),
-      "--progress", "none"};
-  char* arguments[std::size(words) + 1] = {};
-  for (std::size_t k = 0; k < std::size(words); ++k) arguments[k] = words[k].data();
-  const pid_t parent = ::getpid();
-  const pid_t child = ::fork();
-  if (child == 0) become_run(arguments, output.get(), parent, before_);
-  if (child < 0) {
-    throw std::runtime_error(fmt::format("cannot start a run: {}", std::strerror(errno)));
+  ProcessCommand command;
+  command.arguments = {"run",        folder.string(), "--threads", fmt::format("{}", threads),
+                       "--progress", "none"};
+  command.input = STDIN_FILENO;
+  command.output = output.get();
+  command.errors = output.get();
+  command.signals.blocked = before_;
+  command.signals.at_parents_end = SIGTERM;
+  try {
+    runs_.push_back({number, executor_.start(command)});
+  } catch (const ProcessStartError& error) {
+    throw std::runtime_error(fmt::format("cannot start a run: {}", error.code().message()));
   }
-  runs_.emplace(child, number);
 }
 
 std::optional<RunPool::Ended> RunPool::reap() {
-  int status = 0;
-  const pid_t child = ::waitpid(-1, &status, WNOHANG);
-  const auto found = runs_.find(child);
-  if (child <= 0 || found == runs_.end()) return std::nullopt;
-  const Ended ended{found->second,
-                    WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status)};
-  runs_.erase(found);
-  return ended;
+  for (auto run = runs_.begin(); run != runs_.end(); ++run) {
+    const std::optional<ProcessEnd> end = run->process->reap();
+    if (!end) continue;
+    const Ended ended{run->number, exit_code_by(*end)};
+    runs_.erase(run);
+    return ended;
+  }
+  return std::nullopt;
 }
 
 std::optional<RunPool::Ended> RunPool::wait() {
@@ -103,7 +92,7 @@ std::optional<RunPool::Ended> RunPool::wait() {
 void RunPool::stop_all() const { send(SIGTERM); }
 
 void RunPool::send(int signal) const {
-  for (const auto& [child, number] : runs_) ::kill(child, signal);
+  for (const Run& run : runs_) run.process->send(signal);
 }
 
 void RunPool::rest() const {

@@ -1,23 +1,25 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
-#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "engine/execute/executor.hpp"
+
 namespace sluice {
 
-/// Child processes that each run a job, `sluice run FOLDER`, this very program, in a process group
-/// of its own. While it lives, SIGTERM, SIGINT, SIGHUP (where not ignored at the start), SIGTSTP
-/// and SIGCHLD are blocked and only seen by wait(); SIGPIPE is ignored from then on. When the
-/// process dies, however it does, its runs write a checkpoint and stop; when a terminal suspends
-/// it, they rest with it.
+/// Processes of an executor that each run a job, `sluice run FOLDER`, this very program, in a
+/// process group of its own. While it lives, SIGTERM, SIGINT, SIGHUP (where not ignored at the
+/// start), SIGTSTP and SIGCHLD are blocked and only seen by wait(); SIGPIPE is ignored from then
+/// on. When the process dies, however it does, its runs write a checkpoint and stop; when a
+/// terminal suspends it, they rest with it.
 class RunPool {
  public:
-  RunPool();
+  /// The executor outlives it. Its processes are children of this one: SIGCHLD tells of their end.
+  explicit RunPool(Executor& executor);
   /// Asks what still runs to stop, and waits for it.
   ~RunPool();
   RunPool(const RunPool&) = delete;
@@ -39,12 +41,17 @@ class RunPool {
   void stop_all() const;
 
  private:
+  struct Run {
+    std::size_t number;
+    std::unique_ptr<RunningProcess> process;
+  };
   std::optional<Ended> reap();
   void send(int signal) const;
   /// Suspends the runs and this process until it is continued.
   void rest() const;
 
-  std::map<pid_t, std::size_t> runs_;
+  Executor& executor_;
+  std::vector<Run> runs_;
   sigset_t watched_{};
   sigset_t before_{};
 };

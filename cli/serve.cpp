@@ -12,6 +12,7 @@
 #include "cli/serve_options.hpp"
 #include "cli/stop_signals.hpp"
 #include "cli/verbs.hpp"
+#include "engine/execute/time_slice.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "service/api/api.hpp"
 #include "service/jobs/descriptor_budget.hpp"
@@ -19,7 +20,6 @@
 #include "service/jobs/rebuild.hpp"
 #include "service/jobs/repair.hpp"
 #include "service/jobs/service_log.hpp"
-#include "service/worker/time_slice.hpp"
 
 namespace sluice {
 namespace {

@@ -14,6 +14,7 @@
 #include "cli/client/service_study.hpp"
 #include "cli/run_pool.hpp"
 #include "cli/verbs.hpp"
+#include "engine/execute/local_executor.hpp"
 #include "engine/report/study_row.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/publish.hpp"
@@ -278,7 +279,7 @@ void study(StudyArguments arguments) {
   const FolderLock lock(StudyFolder(root).lock());
   const StudyFolder folder = entered(root);
   // Until the results are written: a signal that comes twice must not end the study before.
-  RunPool pool;
+  RunPool pool(local_executor());
   bool finished = true;
   if (!arguments.no_run) {
     folder.publish_study(text);

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "service/worker/sandbox.hpp"
+#include "engine/execute/process_command.hpp"
 
 namespace sluice {
 

@@ -46,18 +46,19 @@ std::string head_line(const Job& job) {
 
 }  // namespace
 
-Attempt::Attempt(Job job, const WorkerCommand& command, double now)
+Attempt::Attempt(Job job, std::filesystem::path folder, std::unique_ptr<RunningProcess> worker,
+                 double now)
     : job_(std::move(job)),
-      folder_(command.folder),
-      process_(command),
-      log_(command.folder, head_line(job_)),
+      folder_(std::move(folder)),
+      worker_(std::move(worker)),
+      log_(folder_, head_line(job_)),
       started_(now),
       stalled_(now) {}
 
 std::vector<WorkerMessage> Attempt::read(double now) {
   std::vector<WorkerMessage> messages;
   if (output_is_open_) {
-    output_is_open_ = drain(process_.output(), [&](std::string_view bytes) {
+    output_is_open_ = drain(worker_->output(), [&](std::string_view bytes) {
       for (const LineReader::Line& line : lines_.feed(bytes)) take(line, now, messages);
     });
     if (!output_is_open_) {
@@ -71,7 +72,7 @@ std::vector<WorkerMessage> Attempt::read(double now) {
 
 void Attempt::read_errors() {
   if (!errors_are_open_) return;
-  errors_are_open_ = drain(process_.errors(), [&](std::string_view bytes) { log_.append(bytes); });
+  errors_are_open_ = drain(worker_->errors(), [&](std::string_view bytes) { log_.append(bytes); });
 }
 
 void Attempt::take(const LineReader::Line& line, double now, std::vector<WorkerMessage>& messages) {
@@ -95,7 +96,7 @@ void Attempt::take(WorkerMessage message, double now, std::vector<WorkerMessage>
     listens_ = true;
     // What came before the first step, such as reading a checkpoint, is progress, but only once.
     if (!step_) stalled_.restart(now);
-    if (std::exchange(checkpoint_wanted_, false)) process_.send(SIGUSR1);
+    if (std::exchange(checkpoint_wanted_, false)) worker_->send(SIGUSR1);
   }
   if (message.step && (!step_ || *message.step > *step_)) {
     step_ = message.step;
@@ -144,23 +145,23 @@ void Attempt::stop(StopCause cause, double now) {
   if (cause_ != StopCause::none) return;
   cause_ = cause;
   stop_asked_ = now;
-  process_.send(SIGTERM);
+  worker_->send(SIGTERM);
 }
 
 void Attempt::kill(StopCause cause) {
   if (cause_ == StopCause::none) cause_ = cause;
-  process_.kill_group();
+  worker_->kill_group();
 }
 
 void Attempt::checkpoint() {
   if (listens_) {
-    process_.send(SIGUSR1);
+    worker_->send(SIGUSR1);
   } else {
     checkpoint_wanted_ = true;
   }
 }
 
-std::optional<WorkerEnd> Attempt::end() { return process_.reap(); }
+std::optional<ProcessEnd> Attempt::end() { return worker_->reap(); }
 
 std::optional<FreshOutcome> Attempt::outcome() const {
   std::optional<FreshOutcome> written = fresh_outcome(paths(), job_);

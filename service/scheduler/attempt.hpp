@@ -1,30 +1,32 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/execute/executor.hpp"
 #include "service/http/line_reader.hpp"
 #include "service/jobs/job.hpp"
 #include "service/scheduler/attempt_end.hpp"
 #include "service/worker/core_use.hpp"
 #include "service/worker/worker_log.hpp"
 #include "service/worker/worker_message.hpp"
-#include "service/worker/worker_process.hpp"
 
 namespace sluice {
 
-/// One attempt at a job: its worker, what it said, and since when it has said nothing. Times are
-/// seconds of a steady clock that the caller reads. For one thread.
+/// One attempt at a job: its worker, what it said, and since when it has said nothing. The worker
+/// ends with it. Times are seconds of a steady clock that the caller reads. For one thread.
 class Attempt {
  public:
-  /// Starts the worker. Throws WorkerStartError.
-  Attempt(Job job, const WorkerCommand& command, double now);
+  /// `worker` runs the job in `folder`, since `now`; its output and errors are pipes.
+  Attempt(Job job, std::filesystem::path folder, std::unique_ptr<RunningProcess> worker,
+          double now);
 
   [[nodiscard]] const Job& job() const { return job_; }
   [[nodiscard]] JobPaths paths() const { return JobPaths(folder_); }
-  [[nodiscard]] const WorkerProcess& process() const { return process_; }
+  [[nodiscard]] const RunningProcess& worker() const { return *worker_; }
   [[nodiscard]] bool output_is_open() const { return output_is_open_; }
   [[nodiscard]] bool errors_are_open() const { return errors_are_open_; }
 
@@ -50,7 +52,7 @@ class Attempt {
   void checkpoint();
 
   /// How the worker ended, if it did; everything that it wrote has been read then.
-  [[nodiscard]] std::optional<WorkerEnd> end();
+  [[nodiscard]] std::optional<ProcessEnd> end();
   /// Its outcome, read from disk or from what it wrote last; nothing without either.
   [[nodiscard]] std::optional<FreshOutcome> outcome() const;
   /// What it said last about why it ended.
@@ -64,7 +66,7 @@ class Attempt {
 
   Job job_;
   std::filesystem::path folder_;
-  WorkerProcess process_;
+  std::unique_ptr<RunningProcess> worker_;
   WorkerLog log_;
   LineReader lines_{kLongestWorkerLine};
   bool output_is_open_ = true;

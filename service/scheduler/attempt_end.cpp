@@ -43,7 +43,7 @@ FreshOutcome outcome_of(const std::string& text, double end_time) {
   return outcome;
 }
 
-std::string end_text(const std::optional<WorkerEnd>& end) {
+std::string end_text(const std::optional<ProcessEnd>& end) {
   if (!end) return "was lost together with the service";
   if (end->signal == SIGKILL) {
     return "was killed by signal 9: by someone, or by the system for want of memory";

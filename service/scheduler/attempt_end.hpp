@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "engine/execute/executor.hpp"
 #include "engine/store/files/job_folder.hpp"
 #include "service/jobs/job.hpp"
 #include "service/jobs/job_store.hpp"
-#include "service/worker/worker_process.hpp"
 
 namespace sluice {
 
@@ -42,7 +42,7 @@ struct FreshOutcome {
 
 /// All that decides what becomes of a job whose attempt ended.
 struct AttemptFacts {
-  std::optional<WorkerEnd> end;  ///< nothing: nobody saw it, the service was not there
+  std::optional<ProcessEnd> end;  ///< nothing: nobody saw it, the service was not there
   StopCause cause = StopCause::none;
   std::optional<FreshOutcome> outcome;
   bool progressed = false;  ///< it left a newer checkpoint than it found

@@ -22,7 +22,7 @@ void hold_to_limits(Attempt& attempt, const ServiceLimits& limits, const Schedul
     if (attempt.stopping_for(now) > limits.stop_seconds) attempt.kill(attempt.stop_cause());
     return;
   }
-  const CoreUse use = senses.core_use(attempt.process().pid());
+  const CoreUse use = senses.core_use(attempt.worker().pid());
   if (attempt.stalled_for(now, use) > limits.stalled_seconds) {
     return attempt.kill(StopCause::stalled);
   }

@@ -31,12 +31,13 @@ std::string ahead_text(std::size_t count) {
 class Scheduler::Impl {
  public:
   Impl(JobStore& store, const std::filesystem::path& data, const ServiceLimits& limits,
-       const std::filesystem::path& worker, const SchedulerSenses& senses)
+       const std::filesystem::path& worker, const SchedulerSenses& senses, Executor& executor)
       : store_(store),
         limits_(limits),
         clock_(senses.clock),
         queue_(store),
-        loop_(store, std::filesystem::absolute(data), limits, worker, senses, queue_, board_),
+        loop_(store, std::filesystem::absolute(data), limits, worker, senses, executor, queue_,
+              board_),
         thread_(new_thread([this] {
           loop_.run();
           board_.note_drained();
@@ -112,8 +113,8 @@ class Scheduler::Impl {
 
 Scheduler::Scheduler(JobStore& store, const std::filesystem::path& data,
                      const ServiceLimits& limits, const std::filesystem::path& worker,
-                     const SchedulerSenses& senses)
-    : impl_(std::make_unique<Impl>(store, data, limits, worker, senses)) {}
+                     const SchedulerSenses& senses, Executor& executor)
+    : impl_(std::make_unique<Impl>(store, data, limits, worker, senses, executor)) {}
 
 Scheduler::~Scheduler() = default;
 

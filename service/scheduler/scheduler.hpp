@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/execute/local_executor.hpp"
 #include "service/jobs/job_store.hpp"
 #include "service/jobs/limits.hpp"
 #include "service/scheduler/scheduler_senses.hpp"
@@ -25,9 +26,10 @@ class Scheduler {
   /// At start: jobs that are marked running are completed, requeued or failed by what their folder
   /// says. Where a worker that outlived the last service still holds the folder's lock, that waits
   /// until it is gone. `worker` is the program to start; empty: this one. It and `senses` are for
-  /// tests.
+  /// tests. `executor` starts it, on the scheduler's thread alone, and outlives the scheduler.
   Scheduler(JobStore& store, const std::filesystem::path& data, const ServiceLimits& limits,
-            const std::filesystem::path& worker = {}, const SchedulerSenses& senses = {});
+            const std::filesystem::path& worker = {}, const SchedulerSenses& senses = {},
+            Executor& executor = local_executor());
   /// Drains: asks every worker for a checkpoint, waits for them, and puts the jobs back into the
   /// queue.
   ~Scheduler();

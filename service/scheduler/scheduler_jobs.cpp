@@ -64,7 +64,7 @@ void SchedulerLoop::record_progress(Attempt& attempt) {
   }
 }
 
-void SchedulerLoop::finish(Attempt& attempt, const WorkerEnd& end) {
+void SchedulerLoop::finish(Attempt& attempt, const ProcessEnd& end) {
   orphaned_on_error(attempt.job(), [&] {
     AttemptFacts facts;
     facts.end = end;
@@ -182,13 +182,15 @@ bool SchedulerLoop::start(const Job& job) {
     return true;
   }
   try {
+    const std::filesystem::path folder = paths(job).root();
+    const double now = senses_.clock();
     const Attempt& attempt = attempts_.emplace_back(
-        job, worker_command(worker_, paths(job).root(), job, limits_), senses_.clock());
-    const Json detail{{"pid", attempt.process().pid()}, {"threads", job.threads}};
+        job, folder, executor_.start(worker_command(worker_, folder, job, limits_)), now);
+    const Json detail{{"pid", attempt.worker().pid()}, {"threads", job.threads}};
     record(attempt, {{"worker_started", detail_text(detail), {}, {}}});
     return true;
-  } catch (const WorkerStartError& error) {
-    put_off(job, error.what());
+  } catch (const ProcessStartError& error) {
+    put_off(job, fmt::format("cannot start a worker: {}", error.what()));
     return false;
   }
 }

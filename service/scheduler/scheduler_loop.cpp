@@ -33,12 +33,13 @@ std::int64_t known_time(const JobStore& store, const std::filesystem::path& data
 
 SchedulerLoop::SchedulerLoop(JobStore& store, std::filesystem::path data, ServiceLimits limits,
                              const std::filesystem::path& worker, SchedulerSenses senses,
-                             const QueueView& queue, SchedulerBoard& board)
+                             Executor& executor, const QueueView& queue, SchedulerBoard& board)
     : store_(store),
       data_(std::move(data)),
       limits_(limits),
       senses_(std::move(senses)),
       worker_(worker.empty() ? worker : std::filesystem::absolute(worker)),
+      executor_(executor),
       queue_(queue),
       board_(board),
       cores_(thread_limit(limits)),
@@ -51,7 +52,7 @@ SchedulerLoop::SchedulerLoop(JobStore& store, std::filesystem::path data, Servic
 JobPaths SchedulerLoop::paths(const Job& job) const { return JobPaths(data_ / "jobs" / job.id); }
 
 void SchedulerLoop::run() {
-  const std::string missing = Sandbox::missing();
+  const std::string missing = executor_.missing_confinement();
   if (limits_.confinement == Confinement::full && !missing.empty()) {
     log_scheduler(
         fmt::format("this system has no {}: workers are confined by limits alone", missing));
@@ -90,10 +91,10 @@ void SchedulerLoop::wait() {
   std::vector<pollfd> entries{{board_.bell(), POLLIN, 0}};
   for (const Attempt& attempt : attempts_) {
     // Entries below 0 are passed over by poll.
-    const WorkerProcess& process = attempt.process();
-    entries.push_back({process.end_descriptor(), POLLIN, 0});
-    entries.push_back({attempt.output_is_open() ? process.output() : -1, POLLIN, 0});
-    entries.push_back({attempt.errors_are_open() ? process.errors() : -1, POLLIN, 0});
+    const RunningProcess& worker = attempt.worker();
+    entries.push_back({worker.end_descriptor(), POLLIN, 0});
+    entries.push_back({attempt.output_is_open() ? worker.output() : -1, POLLIN, 0});
+    entries.push_back({attempt.errors_are_open() ? worker.errors() : -1, POLLIN, 0});
   }
   const double left = std::max(0.0, next_tick_ - senses_.clock());
   ::poll(entries.data(), entries.size(), static_cast<int>(std::ceil(1000 * left)));
@@ -108,7 +109,7 @@ void SchedulerLoop::serve_workers() {
     const double now = senses_.clock();
     record(*attempt, attempt->read(now));
     record_progress(*attempt);
-    const std::optional<WorkerEnd> end = attempt->end();
+    const std::optional<ProcessEnd> end = attempt->end();
     if (!end) {
       ++attempt;
       continue;
@@ -145,7 +146,7 @@ void SchedulerLoop::tick() {
 void SchedulerLoop::publish_status() {
   std::map<std::string, pid_t> workers;
   for (const Attempt& attempt : attempts_) {
-    workers.emplace(attempt.job().id, attempt.process().pid());
+    workers.emplace(attempt.job().id, attempt.worker().pid());
   }
   board_.publish({disk_low_, cores_, free_threads(), conclusions_.back_offs(), workers});
 }

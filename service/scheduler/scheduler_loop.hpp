@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/execute/executor.hpp"
 #include "service/jobs/job_store.hpp"
 #include "service/jobs/queue_view.hpp"
 #include "service/jobs/retention_clock.hpp"
@@ -23,8 +24,8 @@ namespace sluice {
 class SchedulerLoop {
  public:
   SchedulerLoop(JobStore& store, std::filesystem::path data, ServiceLimits limits,
-                const std::filesystem::path& worker, SchedulerSenses senses, const QueueView& queue,
-                SchedulerBoard& board);
+                const std::filesystem::path& worker, SchedulerSenses senses, Executor& executor,
+                const QueueView& queue, SchedulerBoard& board);
 
   /// Returns when it was asked to drain and all workers are gone.
   void run();
@@ -46,7 +47,7 @@ class SchedulerLoop {
   void orphaned_on_error(const Job& job, const Action& action);
   void record(const Attempt& attempt, const std::vector<WorkerMessage>& messages);
   void record_progress(Attempt& attempt);
-  void finish(Attempt& attempt, const WorkerEnd& end);
+  void finish(Attempt& attempt, const ProcessEnd& end);
   void look_after_orphans();
   void conclude_orphan(const Job& job);
   void watch_disk();
@@ -64,6 +65,7 @@ class SchedulerLoop {
   ServiceLimits limits_;
   SchedulerSenses senses_;
   std::filesystem::path worker_;
+  Executor& executor_;
   const QueueView& queue_;
   SchedulerBoard& board_;
   int cores_;

@@ -13,7 +13,7 @@
 
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/file_system.hpp"
-#include "service/worker/worker_process.hpp"
+#include "service/worker/worker_environment.hpp"
 
 namespace sluice {
 namespace {

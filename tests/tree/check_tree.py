@@ -10,16 +10,20 @@ import subprocess
 import sys
 
 # Folders a folder may include from, besides itself: dependencies point one way.
-CHAIN = ["engine/space", "engine/sph", "engine/scene", "engine/store", "engine/export", "engine/run", "engine/draw",
-         "engine/study", "engine/report", "engine/verify"]
+CHAIN = ["engine/space", "engine/sph", "engine/scene", "engine/store", "engine/execute", "engine/export", "engine/run",
+         "engine/draw", "engine/study", "engine/report", "engine/verify"]
 MAY_INCLUDE = {folder: set(CHAIN[:place]) for place, folder in enumerate(CHAIN)}
 # Pictures and studies are data: no run is behind them.
 for folder in ("engine/draw", "engine/study"):
     MAY_INCLUDE[folder] -= {"engine/export", "engine/run"}
 MAY_INCLUDE["engine/run"] -= {"engine/export"}
+# Who starts jobs starts processes: the service and the command line. What computes does not.
+for folder in CHAIN:
+    MAY_INCLUDE[folder] -= {"engine/execute"}
 MAY_INCLUDE["engine/verify"] -= {"engine/export", "engine/report"}
 # No simulation code runs in the service: its jobs are processes.
-MAY_INCLUDE["service"] = {"engine/space", "engine/sph", "engine/scene", "engine/store", "engine/draw", "engine/study"}
+MAY_INCLUDE["service"] = {"engine/space", "engine/sph", "engine/scene", "engine/store", "engine/execute", "engine/draw",
+                          "engine/study"}
 MAY_INCLUDE["cli"] = set(CHAIN) | {"service"}
 MAY_INCLUDE["tests"] = set(CHAIN) | {"service", "cli"}
 

@@ -84,6 +84,15 @@ class CheckTree(unittest.TestCase):
                  "service/worker/worker.cpp": '#include "engine/run/run.hpp"\n'}
         self.assert_one(self.found_in({**GOOD, **files}), "service may not include from engine/run")
 
+    def test_only_the_service_and_the_command_line_may_start_processes(self):
+        files = {"engine/execute/README.md": "", "engine/execute/executor.hpp": "#pragma once\n",
+                 "engine/run/README.md": ""}
+        line = '#include "engine/execute/executor.hpp"\n'
+        for name in ("service/scheduler/attempt.cpp", "cli/study.cpp"):
+            self.assertEqual(self.found_in({**GOOD, **files, name: line}), [])
+        self.assert_one(self.found_in({**GOOD, **files, "engine/run/loop.cpp": line}),
+                        "engine/run may not include from engine/execute")
+
     def test_hdf5_outside_its_room_is_found(self):
         for name in ("engine/store/disk/other.cpp", "tests/store/raw.cpp"):
             found = self.found_in({**GOOD, name: "#include <hdf5.h>\n", "tests/README.md": ""})

@@ -17,14 +17,14 @@ constexpr int kLimit = 3;
 
 AttemptFacts exited(int code, StopCause cause = StopCause::none) {
   AttemptFacts facts;
-  facts.end = WorkerEnd{code, 0};
+  facts.end = ProcessEnd{code, 0};
   facts.cause = cause;
   return facts;
 }
 
 AttemptFacts killed(int signal, StopCause cause = StopCause::none) {
   AttemptFacts facts;
-  facts.end = WorkerEnd{-1, signal};
+  facts.end = ProcessEnd{-1, signal};
   facts.cause = cause;
   return facts;
 }
@@ -48,7 +48,7 @@ TEST(AttemptEnd, CompletedIsWhatTheFolderSaysIsCompleted) {
   AttemptFacts facts = exited(WorkerExit::done);
   facts.outcome = outcome("completed", 0, true);
   EXPECT_EQ(judge(facts, kLimit).action, JobAction::complete);
-  facts.end = WorkerEnd{-1, SIGKILL};
+  facts.end = ProcessEnd{-1, SIGKILL};
   EXPECT_EQ(judge(facts, kLimit).action, JobAction::complete) << "killed after its outcome";
   facts.cause = StopCause::drain;
   EXPECT_EQ(judge(facts, kLimit).action, JobAction::complete) << "stopped too late";

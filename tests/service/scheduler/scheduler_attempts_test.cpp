@@ -11,7 +11,8 @@
 namespace sluice::test {
 namespace {
 
-/// Scripts in place of workers: each way in which an attempt can end, with the scheduler's thread.
+/// Scripts in place of workers: what processes do, with the scheduler's thread. What follows from
+/// how they end is in scheduler_mock_test.cpp.
 class SchedulerThread : public ::testing::Test {
  protected:
   /// Runs jobs with this script as their worker.
@@ -63,69 +64,10 @@ TEST_F(SchedulerThread, EndsAJobWhoseCrashRepeats) {
   EXPECT_NE(job.reason.find("signal 11"), std::string::npos) << job.reason;
 }
 
-TEST_F(SchedulerThread, TriesAgainAfterACrashAndWaitsBefore) {
-  const Job job = add_real_job(store_, data_);
-  start({R"([ $n = 1 ] && kill -9 $$)", kComplete});
-  wait_for_event(store_, job.id, "requeued");
-  wait_until("the reason for waiting", [&] {
-    const std::string why = scheduler_->why_waiting(store_.find(job.id).value());
-    return why.empty() || why == "waits 1 s after its worker was lost";
-  });
-  EXPECT_EQ(wait_for(store_, job.id, JobState::completed).attempts, 2);
-}
-
-TEST_F(SchedulerThread, CountsNoCrashAgainstAJobThatGetsOn) {
-  limits_.crash_limit = 2;
-  const Job job = run(
-      R"(if [ $n -lt 4 ]; then touch "$2/checkpoint-00000000000$n.h5"; kill -9 $$; fi
-)" + std::string(kComplete),
-      JobState::completed);
-  EXPECT_EQ(job.attempts, 4);
-}
-
-TEST_F(SchedulerThread, FailsAtOnceWithTheDiagnosisOfANumericalFailure) {
-  const Job job =
-      run(R"(echo '{"event":"failed","message":"density out of range at step 7"}'; exit 4)",
-          JobState::failed);
-  EXPECT_EQ(job.reason, "density out of range at step 7");
-  EXPECT_EQ(job.attempts, 1);
-}
-
 TEST_F(SchedulerThread, TakesTheReasonFromStderrWhereNoLineTellsIt) {
   const Job job = run("echo 'sluice: nothing usable here' >&2; exit 6", JobState::failed);
   EXPECT_EQ(job.reason, "sluice: nothing usable here");
   EXPECT_NE(read_file(data_.job(job.id) / "worker.log").find("nothing usable"), std::string::npos);
-}
-
-TEST_F(SchedulerThread, PausesWhenTheDiskRefuses) {
-  const Job job = run("echo 'sluice: disk full' >&2; exit 5", JobState::paused);
-  EXPECT_EQ(job.reason, "sluice: disk full");
-}
-
-TEST_F(SchedulerThread, WaitsForAFolderThatIsInUse) {
-  const Job job = run("[ $n = 1 ] && exit 7\n" + std::string(kComplete), JobState::completed);
-  EXPECT_EQ(job.attempts, 2);
-  EXPECT_EQ(job.crashes, 0);
-}
-
-TEST_F(SchedulerThread, EndsAWorkerWithoutProgress) {
-  limits_.stalled_seconds = 0.3;
-  limits_.crash_limit = 1;
-  // It goes on talking, but its step stays.
-  const Job job = run(
-      R"(while :; do echo '{"event":"progress","step":5}'; echo '{"event":"warning"}'; sleep 0.05; done)",
-      JobState::failed);
-  EXPECT_NE(job.reason.find("no progress"), std::string::npos) << job.reason;
-}
-
-TEST_F(SchedulerThread, KeepsAWorkerThatProgressesBeyondTheLimitOfStalling) {
-  limits_.stalled_seconds = 1.5;
-  const Job job = run(
-      R"(for i in $(seq 1 30); do echo "{\"event\":\"progress\",\"step\":$i}"; sleep 0.1; done
-)" + std::string(kComplete),
-      JobState::completed);
-  EXPECT_EQ(job.attempts, 1);
-  EXPECT_NE(job.progress.find("\"step\""), std::string::npos) << job.progress;
 }
 
 TEST_F(SchedulerThread, SurvivesGarbageAndEndlessLines) {
@@ -184,12 +126,6 @@ TEST_F(SchedulerThread, KillsAWorkerThatDoesNotObey) {
   EXPECT_EQ(wait_for(store_, job.id, JobState::cancelled).crashes, 0);
 }
 
-TEST_F(SchedulerThread, PausesAtTheWallLimit) {
-  limits_.wall_seconds_per_attempt = 0.1;
-  const Job job = run(kObeys, JobState::paused);
-  EXPECT_NE(job.reason.find("as long as one attempt may"), std::string::npos);
-}
-
 TEST_F(SchedulerThread, PausesAJobThatTakesTooMuchOfTheDisk) {
   limits_.disk_per_job = 1 << 20;
   const Job job = add_real_job(store_, data_);
@@ -211,19 +147,6 @@ TEST_F(SchedulerThread, PausesAllAndStartsNoneWhileTheDiskIsNearlyFull) {
   });
   EXPECT_EQ(store_.find(running.id)->state, JobState::queued);
   EXPECT_EQ(store_.find(running.id)->attempts, 0);
-}
-
-TEST_F(SchedulerThread, AsksForACheckpointOnceTheWorkerListens) {
-  const Job job = add_real_job(store_, data_);
-  // Not bash: it cannot take a signal that was ignored when it began.
-  start(R"(exec perl -e '$| = 1; $SIG{TERM} = sub { exit 85 };
-select(undef, undef, undef, 0.2);
-$SIG{USR1} = sub { print "{\"event\":\"checkpoint\",\"step\":3}\n" };
-print "{\"event\":\"started\",\"step\":0}\n"; sleep 1 while 1')");
-  wait_for(store_, job.id, JobState::running);
-  EXPECT_TRUE(scheduler_->checkpoint_now(job.id));
-  wait_for_event(store_, job.id, "checkpoint");
-  EXPECT_FALSE(scheduler_->checkpoint_now("j00000000000000000000"));
 }
 
 TEST_F(SchedulerThread, DrainsIntoTheQueueAndTheNextServiceGoesOn) {
@@ -270,21 +193,6 @@ TEST_F(SchedulerThread, WaitsWhenNoWorkerCanBeStarted) {
   wait_for_event(store_, job.id, "requeued");
   EXPECT_NE(store_.find(job.id)->reason.find("cannot start a worker"), std::string::npos);
   EXPECT_EQ(store_.find(job.id)->crashes, 0);
-}
-
-TEST_F(SchedulerThread, PausesAJobWithTheReasonWhenTheSystemGoesOnRefusingToStartIt) {
-  const Job job = add_real_job(store_, data_);
-  SchedulerSenses senses;
-  senses.clock = [clock = senses.clock] { return 1000.0 * clock(); };
-  scheduler_.emplace(store_, data_.path(), limits_, data_.path() / "missing", senses);
-  wait_until("the pause", [&] {
-    scheduler_->poke();
-    return store_.find(job.id)->state == JobState::paused;
-  });
-  const std::string reason = store_.find(job.id)->reason;
-  EXPECT_NE(reason.find("cannot start a worker"), std::string::npos) << reason;
-  EXPECT_NE(reason.find("tried 8 times"), std::string::npos) << reason;
-  EXPECT_EQ(count_events(store_, job.id, "claimed"), 8);
 }
 
 TEST_F(SchedulerThread, DeletesEndedJobsAfterTheirTime) {

@@ -1,28 +1,31 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "service/scheduler/patience.hpp"
+#include "tests/service/scheduler/mock_executor.hpp"
 #include "tests/service/scheduler/scheduler_support.hpp"
 
 namespace sluice::test {
 namespace {
 
-// Runs until DATA/NAME exists, where NAME is the job's id, or until it is told to stop. It answers
-// SIGUSR1 with the event "checkpoint". Not bash, which cannot take a signal that was ignored when
-// it began.
-constexpr std::string_view kUntilReleased = R"(exec perl -MCwd -e '$| = 1;
-($data, $id) = getcwd() =~ m{(.*)/jobs/([^/]+)$};
-$SIG{TERM} = sub { exit 85 };
-$SIG{USR1} = sub { print "{\"event\":\"checkpoint\",\"step\":5}\n" };
-print "{\"event\":\"started\",\"step\":0}\n{\"event\":\"progress\",\"step\":5}\n";
-select(undef, undef, undef, 0.02) until -e "$data/$id";
-open(OUT, ">", "outcome.json");
-print OUT "{\"state\":\"completed\",\"exit_code\":0,\"reason\":\"\",\"end_time\":0.1}";
-')";
+/// Works until it is told to stop or released; answers SIGUSR1 with the event "checkpoint".
+MockHabits until_released() {
+  MockHabits habits;
+  habits.begins = [](MockWorker& worker) {
+    worker.say(R"({"event":"started","step":0})");
+    worker.say(R"({"event":"progress","step":5})");
+  };
+  habits.hears = [](MockWorker& worker, int signal) {
+    if (signal != SIGUSR1) return worker.exit(85);
+    worker.say(R"({"event":"checkpoint","step":5})");
+  };
+  return habits;
+}
 
 /// A machine whose time, cores and disk are what the test says.
 class SchedulerSensesThread : public ::testing::Test {
@@ -32,13 +35,14 @@ class SchedulerSensesThread : public ::testing::Test {
     senses.clock = [this] { return time_.load(); };
     senses.free_disk = [this](const std::filesystem::path&) { return free_.load(); };
     senses.core_use = [this](pid_t) { return CoreUse{core_seconds_.load(), runnable_.load()}; };
-    scheduler_.emplace(store_, data_.path(), limits_, write_worker(data_, kUntilReleased), senses);
+    workers_.set_habits(until_released());
+    scheduler_.emplace(store_, data_.path(), limits_, std::filesystem::path(), senses, workers_);
   }
   void pass(double seconds) {
     time_ = time_ + seconds;
     scheduler_->poke();
   }
-  void release(const Job& job) { write_file(data_.path() / job.id, ""); }
+  void release(const Job& job) { workers_.worker_of(job.id)->complete(); }
   Job wait_for_start(const Job& job) {
     wait_for_event(store_, job.id, "started");
     return wait_for(store_, job.id, JobState::running);
@@ -66,6 +70,7 @@ class SchedulerSensesThread : public ::testing::Test {
   std::atomic<std::uint64_t> free_ = std::uint64_t{1} << 40;
   std::atomic<double> core_seconds_ = 0.0;
   std::atomic<bool> runnable_ = false;
+  MockExecutor workers_;
   std::optional<Scheduler> scheduler_;
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/execute/sandbox.hpp"
 #include "engine/store/files/job_folder.hpp"
 #include "tests/service/scheduler/scheduler_support.hpp"
 

@@ -1,4 +1,4 @@
-#include "service/worker/sandbox.hpp"
+#include "engine/execute/sandbox.hpp"
 
 #include <fcntl.h>
 #include <link.h>
@@ -16,7 +16,8 @@
 #include <set>
 #include <system_error>
 
-#include "service/worker/seccomp_filter.hpp"
+#include "engine/execute/executor.hpp"
+#include "engine/execute/seccomp_filter.hpp"
 
 namespace sluice {
 namespace {
@@ -89,7 +90,7 @@ std::size_t size_for(int version) {
 void allow(int ruleset, int target, std::uint64_t access) {
   const landlock_path_beneath_attr rule{access, target};
   if (::syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0) {
-    throw std::system_error(errno, std::generic_category(), "Landlock refuses a rule");
+    throw ProcessStartError(errno, std::generic_category(), "Landlock refuses a rule");
   }
 }
 
@@ -103,7 +104,7 @@ void allow(int ruleset, const fs::path& path, std::uint64_t access, std::uint64_
   allow(ruleset, target.get(), fitting & handled);
 }
 
-/// What this program was loaded from; a worker is the same program.
+/// What this program was loaded from; a process that is confined is the same program.
 struct LoadedFiles {
   std::set<fs::path> object_folders;
   fs::path interpreter;
@@ -142,11 +143,11 @@ FileDescriptor make_rules(const fs::path& folder, int program) {
   FileDescriptor ruleset(
       static_cast<int>(::syscall(SYS_landlock_create_ruleset, &attributes, size_for(version), 0)));
   if (ruleset.get() < 0) {
-    throw std::system_error(errno, std::generic_category(), "Landlock refuses its rules");
+    throw ProcessStartError(errno, std::generic_category(), "Landlock refuses its rules");
   }
   const FileDescriptor work(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (work.get() < 0) {
-    throw std::system_error(errno, std::generic_category(), "cannot open the job's folder");
+    throw ProcessStartError(errno, std::generic_category(), "cannot open the job's folder");
   }
   allow(ruleset.get(), work.get(), kWork & attributes.file_system);
   allow_program(ruleset.get(), program, attributes.file_system);
@@ -158,7 +159,7 @@ FileDescriptor make_rules(const fs::path& folder, int program) {
 Sandbox::Sandbox(const fs::path& folder, int program)
     : program_descriptor_(highest_descriptor()), rules_(make_rules(folder, program)) {
   if (kSanitized || !has_seccomp()) return;
-  SeccompFilter filter = worker_filter(program_descriptor_);
+  SeccompFilter filter = confined_filter(program_descriptor_);
   filter_ = std::move(filter.program);
   own_id_ = std::move(filter.own_id);
 }
@@ -178,7 +179,7 @@ int Sandbox::enter() {
 
 std::string Sandbox::missing() {
   const bool landlock = landlock_version() > 0;
-  const bool seccomp = has_seccomp() && !worker_filter(kMostDescriptor).program.empty();
+  const bool seccomp = has_seccomp() && !confined_filter(kMostDescriptor).program.empty();
   if (landlock && seccomp) return {};
   if (landlock) return "seccomp";
   return seccomp ? "Landlock" : "Landlock and seccomp";

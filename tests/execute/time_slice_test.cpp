@@ -1,4 +1,4 @@
-#include "service/worker/time_slice.hpp"
+#include "engine/execute/time_slice.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

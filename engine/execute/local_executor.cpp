@@ -1,4 +1,4 @@
-#include "service/worker/worker_process.hpp"
+#include "engine/execute/local_executor.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,39 +9,33 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <system_error>
+#include <string_view>
 #include <utility>
 
-#include "service/worker/child_launch.hpp"
+#include "engine/execute/child_launch.hpp"
+#include "engine/execute/sandbox.hpp"
+#include "engine/store/disk/file_system.hpp"
 
 namespace sluice {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Nothing else of the service's environment, which may hold secrets, reaches a worker.
-constexpr std::array kPassedOn{
-    "PATH",         "LANG",         "LC_ALL",        "TZ",         "LD_LIBRARY_PATH",
-    "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS", "SLUICE_SIMD"};
-
-[[noreturn]] void fail(std::string_view action, int error) {
-  throw WorkerStartError(fmt::format("cannot start a worker: cannot {}: {}", action,
-                                     std::generic_category().message(error)));
+[[noreturn]] void refuse(std::string_view action, int error) {
+  throw ProcessStartError(error, std::generic_category(), fmt::format("cannot {}", action));
 }
 
 /// The same file under a number that the child does not put anything at.
-FileDescriptor raised(const FileDescriptor& descriptor) {
-  FileDescriptor copy(::fcntl(descriptor.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor));
-  if (copy.get() < 0) fail("copy a descriptor", errno);
+FileDescriptor raised(int descriptor) {
+  FileDescriptor copy(::fcntl(descriptor, F_DUPFD_CLOEXEC, kFirstFreeDescriptor));
+  if (copy.get() < 0) refuse("copy a descriptor", errno);
   return copy;
 }
 
-FileDescriptor open_or_fail(const char* path, int flags) {
+FileDescriptor open_raised(const char* path, int flags) {
   const FileDescriptor descriptor(::open(path, flags | O_CLOEXEC));
-  if (descriptor.get() < 0) fail(fmt::format("open {}", path), errno);
-  return raised(descriptor);
+  if (descriptor.get() < 0) refuse(fmt::format("open {}", path), errno);
+  return raised(descriptor.get());
 }
 
 struct Pipe {
@@ -51,14 +45,18 @@ struct Pipe {
 
 Pipe make_pipe() {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("make a pipe", errno);
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) refuse("make a pipe", errno);
   const FileDescriptor reading(ends[0]);
   const FileDescriptor writing(ends[1]);
-  return {raised(reading), raised(writing)};
+  return {raised(reading.get()), raised(writing.get())};
 }
 
-void never_wait_for(const FileDescriptor& descriptor) {
-  if (::fcntl(descriptor.get(), F_SETFL, O_NONBLOCK) != 0) fail("set up a pipe", errno);
+/// Where a stream of the process goes: to that descriptor, or into a pipe that is read here.
+Pipe make_way(std::optional<int> descriptor) {
+  if (descriptor) return {FileDescriptor(-1), raised(*descriptor)};
+  Pipe pipe = make_pipe();
+  if (::fcntl(pipe.reading.get(), F_SETFL, O_NONBLOCK) != 0) refuse("set up a pipe", errno);
+  return pipe;
 }
 
 /// Texts with the array of pointers that exec takes.
@@ -78,21 +76,11 @@ class Strings {
   std::vector<char*> pointers_;
 };
 
-std::vector<std::string> argument_texts(const WorkerCommand& command) {
+std::vector<std::string> argument_texts(const ProcessCommand& command) {
   std::vector<std::string> texts{"sluice"};
   texts.insert(texts.end(), command.arguments.begin(), command.arguments.end());
   return texts;
 }
-
-std::vector<std::string> environment_texts(const WorkerCommand& command) {
-  std::vector<std::string> texts{fmt::format("{}={}", kTokenVariable, command.token)};
-  for (const char* name : kPassedOn) {
-    if (const char* value = std::getenv(name)) texts.push_back(fmt::format("{}={}", name, value));
-  }
-  return texts;
-}
-
-rlim_t limit_of(std::uint64_t bytes) { return bytes == 0 ? RLIM_INFINITY : bytes; }
 
 /// Blocks all signals of this thread for its life, so that no handler of ours runs in the child.
 class SignalPause {
@@ -110,116 +98,119 @@ class SignalPause {
   sigset_t before_{};
 };
 
-pid_t fork_worker(const ChildLaunch& launch) {
+pid_t fork_process(const ChildLaunch& launch) {
   const SignalPause pause;
   const pid_t pid = ::fork();
-  if (pid == 0) become_worker(launch);
-  if (pid < 0) fail("make a process", errno);
+  if (pid == 0) become_process(launch);
+  if (pid < 0) refuse("make a process", errno);
   return pid;
 }
 
 /// Waits for the exec, which closes the other end, or for the report why there is none.
 std::optional<LaunchFailure> launch_failure(const FileDescriptor& report) {
   LaunchFailure failure;
-  ssize_t count = 0;
-  do {
-    count = ::read(report.get(), &failure, sizeof failure);
-  } while (count < 0 && errno == EINTR);
+  const ssize_t count =
+      uninterrupted([&] { return ::read(report.get(), &failure, sizeof failure); });
   if (count != sizeof failure) return {};
   return failure;
 }
 
-std::optional<Sandbox> make_sandbox(const WorkerCommand& command, int program) {
+std::optional<Sandbox> make_sandbox(const ProcessCommand& command, int program) {
   if (command.confinement == Confinement::none) return {};
-  try {
-    return std::optional<Sandbox>(std::in_place, command.folder, program);
-  } catch (const std::system_error& error) {
-    throw WorkerStartError(fmt::format("cannot start a worker: {}", error.what()));
-  }
+  return std::optional<Sandbox>(std::in_place, command.folder, program);
 }
 
 /// The child puts the program at a number where nothing may stand that it needs after that.
 void require_free_number(const Sandbox& sandbox, const FileDescriptor& report) {
   const int number = sandbox.program_descriptor();
   if (report.get() == number || sandbox.rules_descriptor() == number) {
-    fail("find a free descriptor: raise the limit of open files (ulimit -n)", EMFILE);
+    refuse("find a free descriptor: raise the limit of open files (ulimit -n)", EMFILE);
   }
 }
 
-}  // namespace
+class LocalProcess final : public RunningProcess {
+ public:
+  explicit LocalProcess(const ProcessCommand& command);
+  ~LocalProcess() override;
 
-WorkerProcess::WorkerProcess(const WorkerCommand& command) {
+  [[nodiscard]] pid_t pid() const override { return pid_; }
+  [[nodiscard]] int end_descriptor() const override { return end_.get(); }
+  [[nodiscard]] int output() const override { return output_.get(); }
+  [[nodiscard]] int errors() const override { return errors_.get(); }
+  void send(int signal_number) override;
+  void kill_group() override;
+  [[nodiscard]] std::optional<ProcessEnd> reap() override;
+
+ private:
+  pid_t pid_ = -1;
+  FileDescriptor end_{-1};
+  FileDescriptor output_{-1};
+  FileDescriptor errors_{-1};
+};
+
+LocalProcess::LocalProcess(const ProcessCommand& command) {
   const fs::path path = command.program.empty() ? "/proc/self/exe" : command.program;
-  const FileDescriptor program = open_or_fail(path.c_str(), O_PATH);
-  const FileDescriptor input = open_or_fail("/dev/null", O_RDONLY);
-  Pipe output = make_pipe();
-  Pipe errors = make_pipe();
+  const FileDescriptor program = open_raised(path.c_str(), O_PATH);
+  const FileDescriptor input =
+      command.input ? raised(*command.input) : open_raised("/dev/null", O_RDONLY);
+  Pipe output = make_way(command.output);
+  Pipe errors = make_way(command.errors);
   Pipe report = make_pipe();
-  never_wait_for(output.reading);
-  never_wait_for(errors.reading);
   std::optional<Sandbox> sandbox = make_sandbox(command, program.get());
   if (sandbox) require_free_number(*sandbox, report.writing);
   const Strings arguments(argument_texts(command));
-  const Strings environment(environment_texts(command));
+  const Strings environment(command.environment.value_or(std::vector<std::string>()));
+  const std::string oom_score = fmt::format("{}", command.priority.oom_score.value_or(0));
 
-  ChildLaunch launch;
+  ChildLaunch launch{command};
   launch.parent = ::getpid();
   launch.input = input.get();
   launch.output = output.writing.get();
   launch.errors = errors.writing.get();
   launch.report = report.writing.get();
   launch.program = program.get();
-  launch.folder = command.folder.c_str();
   launch.path = path.c_str();
   launch.arguments = arguments.get();
-  launch.environment = environment.get();
-  launch.address_space = limit_of(command.address_space);
-  launch.largest_file = limit_of(command.largest_file);
+  launch.environment = command.environment ? environment.get() : environ;
+  launch.oom_score = command.priority.oom_score ? oom_score.c_str() : nullptr;
   launch.sandbox = sandbox ? &*sandbox : nullptr;
 
-  pid_ = fork_worker(launch);
+  pid_ = fork_process(launch);
   end_ = FileDescriptor(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
   output_ = std::move(output.reading);
   errors_ = std::move(errors.reading);
   report.writing = FileDescriptor(-1);
   if (const auto failure = launch_failure(report.reading)) {
     ::waitpid(std::exchange(pid_, -1), nullptr, 0);
-    fail(failure->action, failure->error);
+    refuse(failure->action, failure->error);
   }
 }
 
-WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)),
-      end_(std::move(other.end_)),
-      output_(std::move(other.output_)),
-      errors_(std::move(other.errors_)) {}
-
-WorkerProcess::~WorkerProcess() {
+LocalProcess::~LocalProcess() {
   if (pid_ < 0) return;
-  kill_group();
-  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  LocalProcess::kill_group();
+  static_cast<void>(uninterrupted([this] { return ::waitpid(pid_, nullptr, 0); }));
 }
 
-void WorkerProcess::send(int signal_number) const {
+void LocalProcess::send(int signal_number) {
   if (pid_ > 0) ::kill(pid_, signal_number);
 }
 
-void WorkerProcess::kill_group() const {
+void LocalProcess::kill_group() {
   if (pid_ <= 0) return;
   ::kill(-pid_, SIGKILL);
   // Should it have left its group.
   ::kill(pid_, SIGKILL);
 }
 
-std::optional<WorkerEnd> WorkerProcess::reap() {
+std::optional<ProcessEnd> LocalProcess::reap() {
   if (pid_ < 0) return {};
   siginfo_t info{};
   // Not reaped yet, it keeps its number: the group that the number names is surely its own.
   const int result = ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
   if (result == 0 && info.si_pid == 0) return {};
   if (result != 0 && errno == EINTR) return {};
-  WorkerEnd end;
+  ProcessEnd end;
   if (result == 0) {
     ::kill(-pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
@@ -231,6 +222,21 @@ std::optional<WorkerEnd> WorkerProcess::reap() {
   }
   pid_ = -1;
   return end;
+}
+
+class LocalExecutor final : public Executor {
+ public:
+  [[nodiscard]] std::unique_ptr<RunningProcess> start(const ProcessCommand& command) override {
+    return std::make_unique<LocalProcess>(command);
+  }
+  [[nodiscard]] std::string missing_confinement() const override { return Sandbox::missing(); }
+};
+
+}  // namespace
+
+Executor& local_executor() {
+  static LocalExecutor executor;
+  return executor;
 }
 
 }  // namespace sluice

@@ -1,4 +1,4 @@
-#include "service/worker/seccomp_filter.hpp"
+#include "engine/execute/seccomp_filter.hpp"
 
 #include <fcntl.h>
 #include <linux/audit.h>
@@ -177,7 +177,7 @@ void allow_threads(Program& program) {
 
 }  // namespace
 
-SeccompFilter worker_filter(int descriptor) {
+SeccompFilter confined_filter(int descriptor) {
   if constexpr (kArchitecture == 0) return {};
   SeccompFilter filter;
   Program program;

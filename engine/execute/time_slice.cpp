@@ -1,4 +1,4 @@
-#include "service/worker/time_slice.hpp"
+#include "engine/execute/time_slice.hpp"
 
 #include <sched.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "service/worker/sandbox.hpp"
+#include "engine/execute/sandbox.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 #include <functional>
 #include <string>
 
-#include "tests/service/scheduler/scheduler_support.hpp"
+#include "tests/execute/execute_support.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SLUICE_SANITIZED 1
@@ -39,7 +39,7 @@ bool is_missing(std::string_view part) {
   return Sandbox::missing().find(part) != std::string::npos;
 }
 
-/// What a worker could try, each in a child of its own that has entered the sandbox.
+/// What a process could try, each in a child of its own that has entered the sandbox.
 class SandboxTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -62,7 +62,7 @@ class SandboxTest : public ::testing::Test {
     return tried([&] { return ::open(path.c_str(), flags, 0644); });
   }
 
-  DataFolder data_;
+  TemporaryFolder data_;
   std::filesystem::path inside_ = data_.path() / "job";
   std::filesystem::path outside_ = data_.path() / "secret";
 };

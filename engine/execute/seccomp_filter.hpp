@@ -14,9 +14,9 @@ struct SeccompFilter {
   std::vector<std::size_t> own_id;
 };
 
-/// Refuses with EPERM what a worker never does: sockets, tracing, signals to others, mounts,
+/// Refuses with EPERM what a run never does: sockets, tracing, signals to others, mounts,
 /// namespaces, io_uring, kernel keys, other limits, and every exec but the one of `descriptor`
 /// itself.
-[[nodiscard]] SeccompFilter worker_filter(int descriptor);
+[[nodiscard]] SeccompFilter confined_filter(int descriptor);
 
 }  // namespace sluice

@@ -11,10 +11,7 @@
 
 namespace sluice {
 
-/// Whether a worker is kept to its job.
-enum class Confinement { full, none };
-
-/// Keeps a worker to its job, as far as the kernel can: it writes in the job's folder only and
+/// Keeps a process to its job, as far as the kernel can: it writes in the job's folder only and
 /// reads there and what the program itself consists of (Landlock); it opens no socket, starts no
 /// program, traces, signals or mounts nothing (seccomp); it gains no privileges. What the kernel
 /// lacks is left out; `missing` says what.
@@ -22,20 +19,14 @@ enum class Confinement { full, none };
 /// Made before a fork, entered by the child just before its exec.
 class Sandbox {
  public:
-  /// Most descriptors that a worker gets, where the service's own limit lets it have so many.
-  static constexpr int kDescriptorLimit = 256;
-
-  /// `program`: a descriptor of the program to be started. Throws std::system_error when the folder
-  /// cannot be opened.
+  /// `program`: a descriptor of the program to be started. Throws ProcessStartError when the folder
+  /// cannot be opened or the kernel refuses.
   Sandbox(const std::filesystem::path& folder, int program);
 
   /// The number that the program's own descriptor has in the child. The one exec that the filter
-  /// lets pass names this number. It lies at or above the limit of descriptors that a worker gets,
-  /// and the exec closes it, so the worker cannot have such a descriptor again.
+  /// lets pass names this number. The process must get a limit of descriptors that is no higher:
+  /// the exec closes it, and then it cannot have such a descriptor again.
   [[nodiscard]] int program_descriptor() const { return program_descriptor_; }
-  [[nodiscard]] int descriptor_limit() const {
-    return program_descriptor_ < kDescriptorLimit ? program_descriptor_ : kDescriptorLimit;
-  }
   /// The descriptor that `enter` needs; below 0 for none.
   [[nodiscard]] int rules_descriptor() const { return rules_.get(); }
 
@@ -49,7 +40,7 @@ class Sandbox {
   int program_descriptor_;
   FileDescriptor rules_;             ///< of Landlock; below 0 without it
   std::vector<sock_filter> filter_;  ///< of seccomp; empty without it
-  std::vector<std::size_t> own_id_;  ///< instructions that compare with the worker's process id
+  std::vector<std::size_t> own_id_;  ///< instructions that compare with the process's own id
 };
 
 }  // namespace sluice
