@@ -106,7 +106,7 @@ step_tidy() {
 step_asan() {
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
-  local parts=(sph scene store run study)
+  local parts=(sph scene store export run draw study report verify)
   if build asan "${parts[@]/#/test_}"; then
     # Names of scripts begin small: they run the program, which is not built here.
     check asan -R "^($(IFS='|' && echo "${parts[*]}"))\.[A-Z]" -LE long
@@ -116,8 +116,8 @@ step_asan() {
 }
 
 step_tsan() {
-  if build tsan test_sph test_scene test_service; then
-    check tsan -R '^service\.[A-Z]|[Tt]hread'
+  if build tsan test_sph test_scene test_execute test_service; then
+    check tsan -R '^(execute|service)\.[A-Z]|[Tt]hread'
   else
     fail "tsan: build"
   fi
