@@ -50,7 +50,7 @@ void add_limit_options(CLI::App& verb, ServiceLimits& limits) {
   add("--max-particles", limits.particles_per_job, "Particles of a job, walls included");
   add_bytes("--max-memory", limits.memory_per_job,
             "Memory of a job, such as 4GB; by default three quarters of the machine's");
-  add_bytes("--max-disk", limits.disk_per_job, "Disk space of a job; by default 20GB");
+  add_bytes("--max-disk", limits.disk_per_job, "Disk space of a job; by default 20GB; 0: no limit");
   add_bytes("--disk-reserve", limits.disk_reserve,
             "Space that stays free: jobs pause before it is used; by default 512MB");
   verb.add_option("--max-wall-seconds", limits.wall_seconds_per_attempt,

@@ -49,6 +49,7 @@ Admitted admit(ParseResult result, const ServiceLimits& limits) {
   admitted.estimate = estimate(admitted.scene);
   check_limits(admitted.estimate, limits);
   fill(admitted);
+  check_limits(admitted.estimate, limits);  // of the exact numbers
   return admitted;
 }
 
@@ -95,7 +96,9 @@ Json broken_limits(const Estimate& estimate, const ServiceLimits& limits) {
   compare("particles", estimate.fluid_particles + estimate.wall_particles,
           limits.particles_per_job);
   compare("memory_bytes", estimate.memory_bytes, memory_limit(limits));
-  compare("disk_bytes", estimate.disk_bytes, limits.disk_per_job);
+  if (limits.disk_per_job > 0) {
+    compare("disk_bytes", estimate.disk_bytes, limits.disk_per_job);
+  }
   return errors;
 }
 

@@ -14,7 +14,7 @@ struct ServiceLimits {
   std::size_t runs_per_study = 100;
   std::uint64_t particles_per_job = 5'000'000;
   std::uint64_t memory_per_job = 0;          ///< bytes; 0: three quarters of the machine's
-  std::uint64_t disk_per_job = 20ULL << 30;  ///< bytes
+  std::uint64_t disk_per_job = 20ULL << 30;  ///< bytes; 0: none
   double wall_seconds_per_attempt = 0.0;     ///< 0: none
   double stalled_seconds = 60.0;             ///< without progress (StallClock): the worker is ended
   double stop_seconds = 45.0;  ///< a worker that was asked to stop is killed after that
