@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "cli/verbs.hpp"
+#include "engine/run/exit_code.hpp"
 #include "sluice/version.hpp"
 
 namespace sluice {
@@ -15,22 +17,39 @@ struct Explained {
   std::string_view about;
 };
 
+struct ExitStatus {
+  int code;
+  std::string_view about;
+};
+
+template <class Code>
+constexpr int code_of(Code code) {
+  return static_cast<int>(code);
+}
+
 constexpr std::array kExitStatus{
-    Explained{"0", "done; of watch: the job has completed"},
-    Explained{"1", "a defect of the program"},
-    Explained{"2", "wrong usage, or a file that is not there"},
-    Explained{"3", "the scene or study is not valid: each problem is a line with its place"},
-    Explained{"4", "the simulation went wrong; the last good checkpoint is kept"},
-    Explained{"5", "the disk is full or refuses, or a file is damaged"},
-    Explained{"6", "there are checkpoints, but none can be used"},
-    Explained{"7", "another process runs this folder"},
-    Explained{"8", "no such job, sensor or file"},
-    Explained{"9", "the job's state does not allow it"},
-    Explained{"10", "no answer at that address, or not from a Sluice service"},
-    Explained{"11", "the job that was watched was cancelled"},
-    Explained{"12", "the token is missing or wrong, or the host is not allowed"},
-    Explained{"13", "the service cannot do it now, or failed"},
-    Explained{"85", "stopped as asked, with a checkpoint: run the folder again to resume"}};
+    ExitStatus{code_of(ExitCode::done), "done; of watch: the job has completed"},
+    ExitStatus{code_of(ExitCode::internal_error), "a defect of the program"},
+    ExitStatus{code_of(ExitCode::usage), "wrong usage, or a file that is not there"},
+    ExitStatus{code_of(ExitCode::invalid_scene),
+               "the scene or study is not valid: each problem is a line with its place"},
+    ExitStatus{code_of(ExitCode::numerical_failure),
+               "the simulation went wrong; the last good checkpoint is kept"},
+    ExitStatus{code_of(ExitCode::storage_failure),
+               "the disk is full or refuses, or a file is damaged"},
+    ExitStatus{code_of(ExitCode::no_usable_checkpoint),
+               "there are checkpoints, but none can be used"},
+    ExitStatus{code_of(ExitCode::folder_locked), "another process runs this folder"},
+    ExitStatus{code_of(ClientExit::not_found), "no such job, sensor or file"},
+    ExitStatus{code_of(ClientExit::wrong_state), "the job's state does not allow it"},
+    ExitStatus{code_of(ClientExit::unreachable),
+               "no answer at that address, or not from a Sluice service"},
+    ExitStatus{code_of(ClientExit::job_cancelled), "the job that was watched was cancelled"},
+    ExitStatus{code_of(ClientExit::refused),
+               "the token is missing or wrong, or the host is not allowed"},
+    ExitStatus{code_of(ClientExit::service_failed), "the service cannot do it now, or failed"},
+    ExitStatus{code_of(ExitCode::checkpointed),
+               "stopped as asked, with a checkpoint: run the folder again to resume"}};
 
 constexpr std::array kEnvironment{
     Explained{"SLUICE_SERVER", "address of the service; http://127.0.0.1:8080 without it"},
@@ -88,13 +107,6 @@ std::string verb_section(const CLI::App& verb) {
   return text;
 }
 
-template <std::size_t n>
-std::string list(const std::array<Explained, n>& all) {
-  std::string text;
-  for (const Explained& one : all) text += item(one.word, one.about);
-  return text;
-}
-
 }  // namespace
 
 std::string man_page(const CLI::App& app) {
@@ -108,8 +120,10 @@ std::string man_page(const CLI::App& app) {
       "folder and resumes there bit by bit.\n.SH VERBS\n",
       roff(kVersion), roff(app.get_description()));
   for (const CLI::App* verb : app.get_subcommands({})) text += verb_section(*verb);
-  text += ".SH EXIT STATUS\n" + list(kExitStatus);
-  text += ".SH ENVIRONMENT\n" + list(kEnvironment);
+  text += ".SH EXIT STATUS\n";
+  for (const ExitStatus& one : kExitStatus) text += item(fmt::format("{}", one.code), one.about);
+  text += ".SH ENVIRONMENT\n";
+  for (const Explained& one : kEnvironment) text += item(one.word, one.about);
   return text;
 }
 

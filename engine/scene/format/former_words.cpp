@@ -15,17 +15,17 @@ struct Place {
   json* object = nullptr;
   std::string key;
 };
-Place place_of(json& written, std::string_view pointer) {
+Place place_of(json& document, std::string_view pointer) {
   json::json_pointer parent{std::string(pointer)};
   std::string key = parent.back();
   parent.pop_back();
-  if (!written.contains(parent) || !written[parent].is_object()) return {nullptr, key};
-  return {&written[parent], std::move(key)};
+  if (!document.contains(parent) || !document[parent].is_object()) return {nullptr, key};
+  return {&document[parent], std::move(key)};
 }
 
 /// Moves the value of key `from` to key `to` of the same object. False where there is none.
-bool rename(json& written, std::string_view from, std::string_view to) {
-  const Place place = place_of(written, from);
+bool rename(json& document, std::string_view from, std::string_view to) {
+  const Place place = place_of(document, from);
   if (place.object == nullptr || !place.object->contains(place.key)) return false;
   const std::string name{to.substr(to.rfind('/') + 1)};
   if (!place.object->contains(name)) (*place.object)[name] = (*place.object)[place.key];
@@ -37,31 +37,31 @@ bool is_at_or_below(std::string_view pointer, std::string_view key) {
   return pointer.starts_with(key) && (pointer.size() == key.size() || pointer[key.size()] == '/');
 }
 
-bool has_both(json& written, const FormerWord& word) {
-  const Place former = place_of(written, word.former);
-  const Place present = place_of(written, word.present);
+bool has_both(json& document, const FormerWord& word) {
+  const Place former = place_of(document, word.former);
+  const Place present = place_of(document, word.present);
   return former.object != nullptr && former.object->contains(former.key) &&
          present.object->contains(present.key);
 }
 
 }  // namespace
 
-std::vector<FormerWord> use_present_words(json& written, std::span<const FormerWord> words,
+std::vector<FormerWord> use_present_words(json& document, std::span<const FormerWord> words,
                                           Problems& problems) {
   std::vector<FormerWord> used;
   for (const FormerWord& word : words) {
-    if (has_both(written, word)) {
+    if (has_both(document, word)) {
       problems.add(std::string(word.former),
                    fmt::format("is the former name of {}, which stands there too: leave one out",
                                word.present));
     }
-    if (rename(written, word.former, word.present)) used.push_back(word);
+    if (rename(document, word.former, word.present)) used.push_back(word);
   }
   return used;
 }
 
-void use_former_words(json& written, std::span<const FormerWord> words) {
-  for (const FormerWord& word : words) rename(written, word.present, word.former);
+void use_former_words(json& document, std::span<const FormerWord> words) {
+  for (const FormerWord& word : words) rename(document, word.present, word.former);
 }
 
 std::string present_pointer(std::string_view pointer, std::span<const FormerWord> words) {

@@ -28,11 +28,11 @@ inline constexpr FormerWord kFormerSceneWords[] = {
 /// Gives the keys of a document that stand under a former name their present one, word by word, and
 /// returns which those were. A key that stands under both is a problem, and keeps its present
 /// value.
-std::vector<FormerWord> use_present_words(nlohmann::json& written,
+std::vector<FormerWord> use_present_words(nlohmann::json& document,
                                           std::span<const FormerWord> words, Problems& problems);
 
 /// The other way round, for every key there is.
-void use_former_words(nlohmann::json& written, std::span<const FormerWord> words);
+void use_former_words(nlohmann::json& document, std::span<const FormerWord> words);
 
 /// A pointer with present names: /numerics/wall_drag/coefficient becomes
 /// /numerics/wall_shear/coefficient.

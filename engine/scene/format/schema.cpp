@@ -10,6 +10,20 @@
 #include "engine/scene/model/problems.hpp"
 
 namespace sluice {
+namespace {
+
+/// Where a schema describes the key with this JSON pointer.
+SchemaWriter::json::json_pointer in_schema(std::string_view key) {
+  SchemaWriter::json::json_pointer place;
+  for (std::string_view rest = key.substr(1);;) {
+    const std::size_t end = rest.find('/');
+    place = place / "properties" / std::string(rest.substr(0, end));
+    if (end == rest.npos) return place;
+    rest.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
 
 std::string SchemaWriter::about(std::string_view about, std::string_view otherwise) {
   std::string text{about};
@@ -127,17 +141,7 @@ SchemaWriter::json SchemaWriter::schema() const {
 }
 
 void add_former_words(SchemaWriter::json& schema, std::span<const FormerWord> words) {
-  using Pointer = SchemaWriter::json::json_pointer;
   for (const FormerWord& word : words | std::views::reverse) {
-    const auto in_schema = [](std::string_view key) {
-      Pointer place;
-      for (std::string_view rest = key.substr(1);;) {
-        const std::size_t end = rest.find('/');
-        place = place / "properties" / std::string(rest.substr(0, end));
-        if (end == rest.npos) return place;
-        rest.remove_prefix(end + 1);
-      }
-    };
     SchemaWriter::json property = schema[in_schema(word.present)];
     property["description"] = fmt::format("former name of {}", word.present);
     property["deprecated"] = true;
