@@ -136,7 +136,7 @@ constexpr std::array kWarning{
 /// Height of a particle against gravity, m; 0 without gravity.
 double height_of(const Particles& particles, std::size_t i, const Vec& gravity) {
   const double strength = gravity.norm();
-  return strength > 0.0 ? -particles.position(i).dot(gravity) / strength : 0.0;
+  return strength > 0.0 ? -particles.position_of(i).dot(gravity) / strength : 0.0;
 }
 
 }  // namespace

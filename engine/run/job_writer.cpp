@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "engine/run/events.hpp"
 #include "engine/run/insist.hpp"
 #include "engine/store/disk/trailer.hpp"
 #include "engine/store/files/series_file.hpp"
@@ -50,7 +51,7 @@ void JobWriter::checkpoint_surely(const Simulation& simulation) {
 
 void JobWriter::try_checkpoint(const Simulation& simulation) {
   if (const auto broken = simulation.violation()) {
-    reporter_->event("warning", {{"message", "no checkpoint from this state: " + broken->text()}});
+    reporter_->event(warning_event("no checkpoint from this state: " + broken->text()));
     return;
   }
   write_checkpoint(simulation);
@@ -62,10 +63,7 @@ void JobWriter::write_checkpoint(const Simulation& simulation) {
   const double end = clock_.seconds();
   checkpoint_step_ = simulation.solver().step_count();
   checkpoint_at_ = end;
-  reporter_->event("checkpoint", {{"file", path.filename().string()},
-                                  {"step", simulation.solver().step_count()},
-                                  {"time", simulation.solver().time()},
-                                  {"seconds", end - start}});
+  reporter_->event(checkpoint_event(simulation, path, end - start));
   folder_->prune();
   checkpoint_cost_ = clock_.seconds() - start;
   checkpoint_seconds_ += checkpoint_cost_;
@@ -172,10 +170,7 @@ void JobWriter::persist(std::string_view what, const std::function<void()>& writ
 }
 
 void JobWriter::warn(std::string_view what, const StorageError& error, double wait) {
-  reporter_->event("warning",
-                   {{"message", fmt::format("{} was not written, next try in {:.1f} s: {}", what,
-                                            wait, told_outside(folder_->name(), error).what())},
-                    {"fault", to_string(error.fault())}});
+  reporter_->event(not_written_event(what, told_outside(folder_->name(), error), wait));
 }
 
 }  // namespace sluice

@@ -70,7 +70,7 @@ Json extremes_json(const Outcome& outcome) {
 
 Json departed_json(const Departed& departed) {
   return Json{{"mass", departed.mass},
-              {"momentum", {departed.momentum.x(), departed.momentum.y()}},
+              {"momentum", departed.momentum},
               {"kinetic_energy", departed.energy.kinetic},
               {"potential_energy", departed.energy.potential},
               {"internal_energy", departed.energy.internal}};
@@ -178,6 +178,29 @@ std::string summary_text(const Outcome& outcome) {
                         outcome.bit_exact ? "" : " (went on with another build or SIMD target)");
   }
   return text;
+}
+
+ExitCode exit_code_of(StorageFault fault) {
+  switch (fault) {
+    case StorageFault::locked:
+      return ExitCode::folder_locked;
+    case StorageFault::no_usable_checkpoint:
+    case StorageFault::unsupported_version:
+      return ExitCode::no_usable_checkpoint;
+    case StorageFault::wrong_scene:
+      return ExitCode::invalid_scene;
+    case StorageFault::not_ours:
+    case StorageFault::already_exists:
+      return ExitCode::usage;
+    case StorageFault::disk_full:
+    case StorageFault::io:
+    case StorageFault::unwritable:
+    case StorageFault::corrupt:
+    case StorageFault::invalid_content:
+    case StorageFault::lost:
+      return ExitCode::storage_failure;
+  }
+  return ExitCode::storage_failure;
 }
 
 }  // namespace sluice

@@ -11,6 +11,7 @@
 #include "engine/run/exit_code.hpp"
 #include "engine/run/guards.hpp"
 #include "engine/run/simulation.hpp"
+#include "engine/store/disk/errors.hpp"
 
 namespace sluice {
 
@@ -66,5 +67,8 @@ struct Outcome {
 
 /// The account for people: figure of merit, passes with their share, digest, what ran it.
 [[nodiscard]] std::string summary_text(const Outcome& outcome);
+
+/// The exit code that belongs to a fault before or outside of a run.
+[[nodiscard]] ExitCode exit_code_of(StorageFault fault);
 
 }  // namespace sluice

@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/run/events.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/file_system.hpp"
 
@@ -25,7 +26,7 @@ std::string line_of(const Json& object) {
   return object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json with_event(std::string_view name, const Json& fields) {
+Json named(std::string_view name, const Json& fields) {
   Json object{{"event", name}};
   object.update(fields);
   return object;
@@ -40,20 +41,34 @@ Json optional_number(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-std::string describe_start(std::string_view name, const Json& fields) {
+std::string describe_start(const RunEvent& event) {
+  const Json& fields = event.fields;
   return fmt::format(
-      "{} {} in {} at step {}, t = {:.6g} s: {} fluid and {} wall particles, {} threads, {}", name,
-      fields.value("scene", ""), fields.value("folder", ""), fields.value("step", std::uint64_t{0}),
-      fields.value("time", 0.0), fields.value("particles", std::uint64_t{0}),
-      fields.value("wall_particles", std::uint64_t{0}), fields.value("threads", 1),
-      fields.value("simd_target", ""));
+      "{} {} in {} at step {}, t = {:.6g} s: {} fluid and {} wall particles, {} threads, {}",
+      to_string(event.kind), fields.value("scene", ""), fields.value("folder", ""),
+      fields.value("step", std::uint64_t{0}), fields.value("time", 0.0),
+      fields.value("particles", std::uint64_t{0}), fields.value("wall_particles", std::uint64_t{0}),
+      fields.value("threads", 1), fields.value("simd_target", ""));
 }
 
 /// What a person is told; nothing where the bar or the closing account says it.
-std::string describe(std::string_view name, const Json& fields) {
-  if (name == "started" || name == "resumed") return describe_start(name, fields);
-  if (name != "warning" && name != "excluded" && name != "leaked") return {};
-  return fmt::format("{}: {}", name, fields.value("message", ""));
+std::string describe(const RunEvent& event) {
+  switch (event.kind) {
+    case EventKind::started:
+    case EventKind::resumed:
+      return describe_start(event);
+    case EventKind::warning:
+    case EventKind::excluded:
+    case EventKind::leaked:
+      return fmt::format("{}: {}", to_string(event.kind), event.message());
+    case EventKind::packed:
+    case EventKind::checkpoint:
+    case EventKind::finished:
+    case EventKind::stopped:
+    case EventKind::failed:
+      return {};
+  }
+  return {};
 }
 
 }  // namespace
@@ -87,10 +102,12 @@ Json to_json(const Diagnosis& diagnosis) {
               {"limit", diagnosis.limit},   {"suggestion", diagnosis.suggestion}};
 }
 
-void JsonReporter::progress(const Progress& progress) { event("progress", to_json(progress)); }
+void JsonReporter::progress(const Progress& progress) {
+  put(out_, line_of(named("progress", to_json(progress))));
+}
 
-void JsonReporter::event(std::string_view name, const Json& fields) {
-  put(out_, line_of(with_event(name, fields)));
+void JsonReporter::event(const RunEvent& event) {
+  put(out_, line_of(named(to_string(event.kind), event.fields)));
 }
 
 std::size_t StatusLine::width() const {
@@ -117,21 +134,21 @@ void BarReporter::progress(const Progress& progress) {
   bar_.draw(progress_bar(progress, bar_.width()));
 }
 
-void BarReporter::event(std::string_view name, const Json& fields) {
-  if (name == "checkpoint") return;
+void BarReporter::event(const RunEvent& event) {
+  if (event.kind == EventKind::checkpoint) return;
   bar_.clear();
-  const std::string line = describe(name, fields);
+  const std::string line = describe(event);
   if (!line.empty()) put(out_, line + "\n");
 }
 
 LoggingReporter::LoggingReporter(Reporter& next, std::filesystem::path log)
     : next_(&next), log_(std::move(log)) {}
 
-void LoggingReporter::event(std::string_view name, const Json& fields) {
-  next_->event(name, fields);
+void LoggingReporter::event(const RunEvent& event) {
+  next_->event(event);
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   Json line{{"at", fmt::format("{:%FT%TZ}", now)}};
-  line.update(with_event(name, fields));
+  line.update(named(to_string(event.kind), event.fields));
   const FileDescriptor file(uninterrupted([&] {
     return ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
   }));

@@ -12,16 +12,15 @@
 
 namespace sluice {
 
+struct RunEvent;
+
 /// Who hears how a run goes. Reporting never fails a run: a reader who went away is ignored.
 class Reporter {
  public:
   virtual ~Reporter() = default;
   /// About once a second.
   virtual void progress(const Progress& progress) = 0;
-  /// `name`: started, packed, resumed, checkpoint, warning, excluded, leaked, finished, stopped or
-  /// failed. `fields` is an object; all but started, packed, resumed and checkpoint may have
-  /// "message".
-  virtual void event(std::string_view name, const nlohmann::ordered_json& fields) = 0;
+  virtual void event(const RunEvent& event) = 0;
 };
 
 /// One JSON object per line: {"event": name, ...}. The service reads these.
@@ -29,7 +28,7 @@ class JsonReporter final : public Reporter {
  public:
   explicit JsonReporter(std::FILE* out) : out_(out) {}
   void progress(const Progress& progress) override;
-  void event(std::string_view name, const nlohmann::ordered_json& fields) override;
+  void event(const RunEvent& event) override;
 
  private:
   std::FILE* out_;
@@ -56,7 +55,7 @@ class BarReporter final : public Reporter {
  public:
   explicit BarReporter(std::FILE* out) : out_(out), bar_(out) {}
   void progress(const Progress& progress) override;
-  void event(std::string_view name, const nlohmann::ordered_json& fields) override;
+  void event(const RunEvent& event) override;
 
  private:
   std::FILE* out_;
@@ -66,7 +65,7 @@ class BarReporter final : public Reporter {
 class SilentReporter final : public Reporter {
  public:
   void progress(const Progress&) override {}
-  void event(std::string_view, const nlohmann::ordered_json&) override {}
+  void event(const RunEvent&) override {}
 };
 
 /// Passes everything on and appends all but progress to a log file with the time of day. The log is
@@ -75,7 +74,7 @@ class LoggingReporter final : public Reporter {
  public:
   LoggingReporter(Reporter& next, std::filesystem::path log);
   void progress(const Progress& progress) override { next_->progress(progress); }
-  void event(std::string_view name, const nlohmann::ordered_json& fields) override;
+  void event(const RunEvent& event) override;
 
  private:
   Reporter* next_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/run/build_id.hpp"
+#include "engine/run/events.hpp"
 #include "engine/run/insist.hpp"
 #include "engine/run/job_writer.hpp"
 #include "engine/run/machine_name.hpp"
@@ -15,7 +16,7 @@
 #include "engine/run/signals.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/run/stopwatch.hpp"
-#include "engine/scene/format/canonical.hpp"
+#include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/digest.hpp"
 
 namespace sluice {
@@ -48,7 +49,7 @@ class RunLoop {
       writer_.write_outcome(outcome);
     } catch (const StorageError& inside) {
       const StorageError error = told_outside(folder_->name(), inside);
-      reporter_->event("warning", {{"message", error.what()}});
+      reporter_->event(warning_event(error.what()));
       // Who only reads files does not learn that it is complete: run again, it says so at once.
       if (outcome.exit_code == ExitCode::done) {
         return describe(ExitCode::storage_failure, error.what());
@@ -80,7 +81,7 @@ class RunLoop {
     if (const auto checkpoint = writer_.whole_checkpoint()) {
       outcome.exit_code = ExitCode::checkpointed;
       outcome.reason =
-          fmt::format("stopped by a signal while the disk refused to write; it goes on from {}: {}",
+          fmt::format("stopped by a signal while the disk refused to write; it resumes from {}: {}",
                       checkpoint->filename().string(), error.what());
     }
     return outcome;
@@ -112,9 +113,7 @@ class RunLoop {
   void report() {
     removals_.tell(*simulation_, *reporter_);
     for (const Diagnosis& warning : simulation_->take_warnings()) {
-      Json fields = to_json(warning);
-      fields["message"] = warning.text();
-      reporter_->event("warning", fields);
+      reporter_->event(warning_event(warning));
     }
     const double now = clock_.seconds();
     if (now < next_report_) return;
@@ -149,7 +148,7 @@ class RunLoop {
     try {
       writer_.finish_series(*simulation_);
     } catch (const StorageError& error) {
-      reporter_->event("warning", {{"message", told_outside(folder_->name(), error).what()}});
+      reporter_->event(warning_event(told_outside(folder_->name(), error).what()));
     }
     Outcome outcome = describe(ExitCode::numerical_failure, failure.what());
     outcome.diagnosis = failure.diagnosis();
@@ -186,39 +185,6 @@ class RunLoop {
   std::string stop_reason_;
 };
 
-Json started_fields(const Simulation& simulation, const JobFolder& folder) {
-  const Solver& solver = simulation.solver();
-  // A few may be gone before the first step: they have started as well.
-  const std::size_t gone = solver.step_count() == 0 ? solver.removed().size() : 0;
-  return Json{{"scene", simulation.scene().name},
-              {"folder", folder.name().string()},
-              {"step", solver.step_count()},
-              {"time", solver.time()},
-              {"end_time", simulation.scene().end_time},
-              {"particles", solver.particle_count() + gone},
-              {"wall_particles", solver.wall_count()},
-              {"threads", solver.threads()},
-              {"simd_target", solver.simd_target()},
-              {"build", build_id()},
-              {"bit_exact", simulation.bit_exact()}};
-}
-
-Json packed_fields(const Simulation& simulation) {
-  const PackingReport& packing = *simulation.packing();
-  return Json{{"particles", packing.particles},
-              {"iterations", packing.iterations},
-              {"residual", packing.residual},
-              {"core_seconds", simulation.start_seconds()}};
-}
-
-void report_rejected(const std::vector<std::string>& reasons, Reporter& reporter) {
-  for (const std::string& reason : reasons) reporter.event("warning", {{"message", reason}});
-}
-
-CheckpointIdentity identity_of(const Scene& scene) {
-  return {scene_hash(identity_text(scene)), scene.method.integrator};
-}
-
 /// A scene whose first state violates a guard has no simulation to describe.
 Outcome failed_at_start(JobFolder& folder, const Scene& scene, const NumericalFailure& failure) {
   Outcome outcome;
@@ -232,19 +198,12 @@ Outcome failed_at_start(JobFolder& folder, const Scene& scene, const NumericalFa
   return outcome;
 }
 
-void report_outcome(const Outcome& outcome, Reporter& reporter) {
-  Json fields = to_json(outcome);
-  if (!outcome.reason.empty()) fields["message"] = outcome.reason;
-  if (outcome.exit_code == ExitCode::done) return reporter.event("finished", fields);
-  reporter.event(outcome.exit_code == ExitCode::checkpointed ? "stopped" : "failed", fields);
-}
-
 Outcome run_from_scene(JobFolder& folder, const Scene& scene, const RunOptions& options,
                        SignalRequests& signals, Reporter& reporter) {
   try {
     Simulation simulation(scene, options.execution);
-    reporter.event("started", started_fields(simulation, folder));
-    if (simulation.packing()) reporter.event("packed", packed_fields(simulation));
+    reporter.event(started_event(simulation, folder));
+    if (simulation.packing()) reporter.event(packed_event(simulation));
     return RunLoop(folder, options, signals, reporter, simulation).run();
   } catch (const NumericalFailure& failure) {
     return failed_at_start(folder, scene, failure);
@@ -253,11 +212,9 @@ Outcome run_from_scene(JobFolder& folder, const Scene& scene, const RunOptions& 
 
 Outcome run_from_checkpoint(JobFolder& folder, const Scene& scene, const RunOptions& options,
                             SignalRequests& signals, Reporter& reporter, Restored restored) {
-  report_rejected(restored.rejected, reporter);
+  for (const std::string& reason : restored.rejected) reporter.event(warning_event(reason));
   Simulation simulation(scene, options.execution, std::move(restored.checkpoint));
-  Json fields = started_fields(simulation, folder);
-  fields["file"] = restored.path.filename().string();
-  reporter.event("resumed", fields);
+  reporter.event(resumed_event(simulation, folder, restored.path));
   RunLoop loop(folder, options, signals, reporter, simulation);
   loop.resumed_at(simulation.solver().step_count());
   return loop.run();
@@ -270,9 +227,7 @@ std::optional<Restored> find_checkpoint(JobFolder& folder, const Scene& scene, R
     return folder.newest_checkpoint(identity_of(scene));
   } catch (const StorageError& inside) {
     const StorageError error = told_outside(folder.name(), inside);
-    reporter.event("failed", {{"exit_code", static_cast<int>(exit_code_of(error.fault()))},
-                              {"fault", to_string(error.fault())},
-                              {"message", error.what()}});
+    reporter.event(refused_event(error));
     throw error;
   }
 }
@@ -292,31 +247,8 @@ Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options
   Outcome outcome =
       restored ? run_from_checkpoint(folder, scene, options, signals, logging, *std::move(restored))
                : run_from_scene(folder, scene, options, signals, logging);
-  report_outcome(outcome, logging);
+  logging.event(ended_event(outcome));
   return outcome;
-}
-
-ExitCode exit_code_of(StorageFault fault) {
-  switch (fault) {
-    case StorageFault::locked:
-      return ExitCode::folder_locked;
-    case StorageFault::no_usable_checkpoint:
-    case StorageFault::unsupported_version:
-      return ExitCode::no_usable_checkpoint;
-    case StorageFault::wrong_scene:
-      return ExitCode::invalid_scene;
-    case StorageFault::not_ours:
-    case StorageFault::already_exists:
-      return ExitCode::usage;
-    case StorageFault::disk_full:
-    case StorageFault::io:
-    case StorageFault::unwritable:
-    case StorageFault::corrupt:
-    case StorageFault::invalid_content:
-    case StorageFault::lost:
-      return ExitCode::storage_failure;
-  }
-  return ExitCode::storage_failure;
 }
 
 }  // namespace sluice

@@ -35,7 +35,4 @@ struct RunOptions {
 [[nodiscard]] Outcome run_job(JobFolder& folder, const Scene& scene, const RunOptions& options,
                               Reporter& reporter);
 
-/// The exit code that belongs to a fault before or outside of a run.
-[[nodiscard]] ExitCode exit_code_of(StorageFault fault);
-
 }  // namespace sluice

@@ -6,6 +6,7 @@
 
 #include "engine/run/schedule.hpp"
 #include "engine/scene/geometry/open_fraction.hpp"
+#include "engine/space/axes.hpp"
 
 namespace sluice {
 namespace {
@@ -63,26 +64,31 @@ class FacePressureSampler final : public PressureSampler {
   double air_;
 };
 
-/// `x` moved half a support away from the tank's walls. On the wall itself half of the kernel lies
-/// outside the fluid, and no height is half full; here 0.98 of it lies inside.
-double clear_of_walls(double x, const Scene& scene) {
-  if (!scene.tank) return x;
-  const double margin = std::min(0.5 * scene.method.support(), 0.5 * scene.tank->width);
-  return std::clamp(x, margin, scene.tank->width - margin);
+/// `place` moved half a support away from the tank's side walls. On the wall itself half of the
+/// kernel lies outside the fluid, and no height is half full; here 0.98 of it lies inside.
+Vec clear_of_walls(Vec place, const Scene& scene) {
+  if (!scene.tank) return place;
+  const Box interior = scene.tank->interior();
+  for (const int axis : kFloorAxes) {
+    const double length = interior.size()[axis];
+    const double margin = std::min(0.5 * scene.method.support(), 0.5 * length);
+    place[axis] = std::clamp(place[axis], margin, length - margin);
+  }
+  return place;
 }
 
-/// Height of the surface over a given x, m: h of eq. 21. Also the column height, at the column's
+/// Height of the surface over a place, m: h of eq. 21. Also the column height, at the column's
 /// wall.
 class SurfaceHeightSampler final : public Sampler {
  public:
-  explicit SurfaceHeightSampler(double x) : x_(x) {}
+  explicit SurfaceHeightSampler(const Vec& place) : place_(place) {}
   std::vector<Series::Column> columns() const override { return {{"value", "m"}}; }
   double sample(const Solver& solver, std::span<double> values) const override {
-    return store_probe(solver.surface_height_at(x_), values);
+    return store_probe(solver.surface_height_at(place_), values);
   }
 
  private:
-  double x_;
+  Vec place_;
 };
 
 /// Position of the surge front, m: w of eq. 20. The front ends at the tank's right wall: what
@@ -169,7 +175,7 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene) 
       return std::make_unique<PressureSampler>(sensor, scene);
     case SensorKind::surface_height:
     case SensorKind::column_height:
-      return std::make_unique<SurfaceHeightSampler>(clear_of_walls(sensor.position.x(), scene));
+      return std::make_unique<SurfaceHeightSampler>(clear_of_walls(sensor.position, scene));
     case SensorKind::surge_front:
       return std::make_unique<SurgeFrontSampler>(scene);
     case SensorKind::energy:

@@ -16,6 +16,7 @@
 #include "engine/scene/format/canonical.hpp"
 #include "engine/scene/geometry/leaks.hpp"
 #include "engine/store/disk/errors.hpp"
+#include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/digest.hpp"
 
 namespace sluice {
@@ -23,64 +24,6 @@ namespace {
 
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
   return Solver(method_with_solids(scene), state, scene_walls(scene), execution);
-}
-
-void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
-  if (checkpoint.scene_hash == hash) return;
-  throw StorageError(StorageFault::wrong_scene,
-                     fmt::format("the checkpoint of step {} belongs to scene {}, not to this scene "
-                                 "{}; run this scene in a folder of its own (--folder)",
-                                 checkpoint.solver.step, checkpoint.scene_hash, hash));
-}
-
-bool same_sensors(const SampleTable& a, const SampleTable& b) {
-  return a.names == b.names && a.places == b.places && a.kind == b.kind &&
-         a.columns.size() == b.columns.size();
-}
-
-[[noreturn]] void refuse_samples() {
-  throw StorageError(StorageFault::corrupt,
-                     "the checkpoint's series are not those of the scene's sensors");
-}
-
-/// Fills a table with those of all sensors' series that are its own. Samples cannot be matched to
-/// sensors by chance: names, columns and times must agree.
-void fill(SampleTable& table, const std::vector<Series>& series) {
-  std::vector<const Series*> sensors;
-  for (std::size_t i = 0; i < table.sensors(); ++i) {
-    const Series* const one = &series[static_cast<std::size_t>(table.places[i])];
-    if (one->name != table.names[i] || one->kind != table.kind ||
-        one->columns.size() != table.columns.size() ||
-        (i > 0 && (one->time != sensors[0]->time || one->next_index != sensors[0]->next_index))) {
-      refuse_samples();
-    }
-    sensors.push_back(one);
-  }
-  table.time = sensors[0]->time;
-  table.duration = sensors[0]->duration;
-  table.next_index = sensors[0]->next_index;
-  const auto columns = static_cast<std::ptrdiff_t>(table.columns.size());
-  for (std::size_t n = 0; n < table.size(); ++n) {
-    for (const Series* const one : sensors) {
-      const auto values = one->values.begin() + static_cast<std::ptrdiff_t>(n) * columns;
-      table.values.insert(table.values.end(), values, values + columns);
-      table.weight.push_back(one->weight[n]);
-    }
-  }
-}
-
-/// The samples of a checkpoint in the tables of the scene's sensors. Earlier builds kept each
-/// sensor by itself.
-std::vector<SampleTable> in_tables(const std::vector<SampleTable>& empty,
-                                   std::vector<SampleTable> found) {
-  if (std::equal(empty.begin(), empty.end(), found.begin(), found.end(), same_sensors)) {
-    return found;
-  }
-  const std::vector<Series> series = split(found);
-  std::vector<SampleTable> tables = empty;
-  if (series.size() != sensor_count(tables)) refuse_samples();
-  for (SampleTable& table : tables) fill(table, series);
-  return tables;
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -114,8 +57,8 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
       samples_(std::move(checkpoint.samples)),
       baselines_(checkpoint.guards),
       next_snapshot_(checkpoint.next_snapshot) {
-  require_same_scene(scene_hash_, checkpoint);
-  samples_ = in_tables(sensors_.empty_tables(), std::move(samples_));
+  require_identity(checkpoint, {scene_hash_, scene_.method.integrator});
+  samples_ = in_tables_like(sensors_.empty_tables(), std::move(samples_));
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();
   count_removed();

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/run/events.hpp"
 #include "engine/run/run_loop.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/scene/filling/initial.hpp"
@@ -25,8 +26,8 @@ class WarningKeeper final : public Reporter {
  public:
   explicit WarningKeeper(std::vector<std::string>& kept) : kept_(&kept) {}
   void progress(const Progress&) override {}
-  void event(std::string_view name, const nlohmann::ordered_json& fields) override {
-    if (name == "warning") kept_->push_back(fields.value("message", ""));
+  void event(const RunEvent& event) override {
+    if (event.kind == EventKind::warning) kept_->push_back(event.message());
   }
 
  private:
@@ -39,8 +40,7 @@ Checkpoint prepared(const Scene& scene, const CaseRunner::Prepare& prepare) {
   Particles& particles = start.solver.particles;
   prepare(particles);
   if (scene.method.integrator == Integrator::modified_leap_frog) {
-    particles.vx_half = particles.vx;
-    particles.vy_half = particles.vy;
+    particles.velocity_half = particles.velocity;
   }
   const Solver solver(scene.method, start.solver, scene_walls(scene), {});
   start.guards = initial_baselines(scene.method, start.solver, solver.energy());
@@ -80,9 +80,7 @@ CaseRun CaseRunner::run(const Json& scene, StabilityCheck stability, const Prepa
   RunOptions options;
   run.outcome = run_job(folder, run.scene, options, reporter);
   if (run.outcome.exit_code == ExitCode::checkpointed) throw SuiteStopped();
-  const CheckpointIdentity expected{scene_hash(identity_text(run.scene)),
-                                    run.scene.method.integrator};
-  if (auto restored = folder.newest_checkpoint(expected)) {
+  if (auto restored = folder.newest_checkpoint(identity_of(run.scene))) {
     run.checkpoint = name + "/" + restored->path.filename().string();
     run.last = std::move(restored->checkpoint);
   }

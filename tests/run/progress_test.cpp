@@ -1,3 +1,4 @@
+#include "engine/run/events.hpp"
 #include "engine/run/progress.hpp"
 
 #include <gtest/gtest.h>
@@ -87,9 +88,9 @@ TEST(Bar, TellsOfWarningsAndLeavesTheRestToTheAccount) {
   std::size_t size = 0;
   std::FILE* file = open_memstream(&text, &size);
   BarReporter reporter(file);
-  reporter.event("checkpoint", {{"step", 5}});
-  reporter.event("finished", {{"step", 9}});
-  reporter.event("warning", {{"message", "mind the gap"}});
+  reporter.event({EventKind::checkpoint, {{"step", 5}}});
+  reporter.event({EventKind::finished, {{"step", 9}}});
+  reporter.event(warning_event("mind the gap"));
   std::fclose(file);
   const std::string lines(text, size);
   free(text);
@@ -101,7 +102,7 @@ TEST(JsonLine, IsOneObjectPerLineEvenWhenANameIsNoUtf8) {
   std::size_t size = 0;
   std::FILE* file = open_memstream(&text, &size);
   JsonReporter reporter(file);
-  reporter.event("warning", {{"message", "bad \xff name\nand a new line"}});
+  reporter.event(warning_event("bad \xff name\nand a new line"));
   reporter.progress(halfway());
   std::fclose(file);
   const std::string lines(text, size);

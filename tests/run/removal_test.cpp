@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "engine/run/events.hpp"
 #include "engine/run/removal_news.hpp"
 #include "engine/run/simulation.hpp"
 #include "engine/scene/checks/parse.hpp"
@@ -63,16 +64,14 @@ TEST(EnergyGuard, DoesNotDependOnTheOrigin) {
     SolverState state;
     Energy energy;
     for (const Vec& place : {Vec(0.0, 0.0), Vec(1.0, 1.0), Vec(2.0, 0.5)}) {
-      state.particles.x.push_back(place.x() + origin.x());
-      state.particles.y.push_back(place.y() + origin.y());
+      append(state.particles.position, Vec(place + origin));
       energy.potential -= weight * method.gravity.dot(place + origin);
     }
     const GuardBaselines base = initial_baselines(method, state, energy);
     // The third leaves as it is: nothing has grown.
     RemovedParticle third;
     third.cause = RemovalCause::overtopped;
-    third.x = state.particles.x[2];
-    third.y = state.particles.y[2];
+    third.position = state.particles.position_of(2);
     const double gone = energy_that_left(method, third);
     const double still = energy.potential + weight * method.gravity.dot(Vec(2.0, 0.5) + origin);
     growths.push_back((still + gone - base.initial_energy) / base.energy_scale);
@@ -90,8 +89,8 @@ Checkpoint with_fast_ones(const Scene& scene, std::size_t count) {
     const std::size_t i = k * p.size() / count;
     p.density_excess[i] = 0.2999 * scene.method.reference_density;
     if (!p.density_excess_half.empty()) p.density_excess_half[i] = p.density_excess[i];
-    p.vx[i] = 0.999 * scene.method.sound_speed;
-    if (!p.vx_half.empty()) p.vx_half[i] = p.vx[i];
+    p.velocity[0][i] = 0.999 * scene.method.sound_speed;
+    if (!p.velocity_half[0].empty()) p.velocity_half[0][i] = p.velocity[0][i];
   }
   return kept;
 }
@@ -100,9 +99,9 @@ Checkpoint with_fast_ones(const Scene& scene, std::size_t count) {
 class Listener final : public Reporter {
  public:
   void progress(const Progress&) override {}
-  void event(std::string_view name, const Json& fields) override {
-    names.emplace_back(name);
-    messages.push_back(fields.value("message", ""));
+  void event(const RunEvent& event) override {
+    names.emplace_back(to_string(event.kind));
+    messages.push_back(event.message());
   }
   std::vector<std::string> names;
   std::vector<std::string> messages;
