@@ -19,6 +19,7 @@
 #include "engine/report/snapshots.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/publish.hpp"
+#include "engine/store/read/job_reader.hpp"
 
 namespace sluice {
 namespace {
@@ -39,7 +40,7 @@ struct ReportArguments {
 
 std::string formatted(const ReportArguments& arguments, const std::filesystem::path& folder,
                       ReportFormat format) {
-  JobRecord job = read_job(folder);
+  JobRecord job = JobReader(folder).record();
   if (!job.outcome.is_object()) {
     job.outcome = nlohmann::ordered_json::parse(arguments.outcome, nullptr, false);
   }
@@ -148,7 +149,7 @@ void add_report(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("report", "Say what a run came to, and compare it with an experiment.");
   verb->add_option("target", arguments->target,
-                   "Job folder, of a run that goes on or has ended, or the job's id at a service")
+                   "Job folder, of a running job or an ended one, or the job's id at a service")
       ->required();
   const std::map<std::string, ReportFormat> formats{
       {"text", ReportFormat::text},         {"json", ReportFormat::json},

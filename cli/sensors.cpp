@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Divisors divisors_or_end(const JobData& job, const Series& series) {
+Divisors divisors_or_end(const JobReader& job, const Series& series) {
   try {
     return dimensionless_divisors(job.scene(), series);
   } catch (const std::invalid_argument& error) {
@@ -27,7 +27,7 @@ Divisors divisors_or_end(const JobData& job, const Series& series) {
   }
 }
 
-SeriesQuery query_of(const JobData& job, const Series& raw, const SensorArguments& arguments) {
+SeriesQuery query_of(const JobReader& job, const Series& raw, const SensorArguments& arguments) {
   SeriesQuery query;
   query.from = arguments.from;
   query.to = arguments.to;
@@ -99,8 +99,14 @@ void show_sensors(SensorArguments arguments) {
     return show_service_sensors(arguments);
   }
   require_folder(arguments.target);
-  const JobData job(arguments.target);
+  const JobReader job = job_or_end(arguments.target);
   const std::vector<Series> all = job.series();
+  if (all.empty()) {
+    throw CommandEnd(
+        ExitCode::usage,
+        fmt::format("{} has no samples yet: its scene has no sensors, or it did not run",
+                    arguments.target));
+  }
   if (arguments.name.empty()) return list_sensors(all, arguments.format);
   const Series& raw = find_series(all, arguments.name);
   const SeriesQuery query = query_of(job, raw, arguments);

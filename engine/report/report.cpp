@@ -6,21 +6,16 @@
 #include <cmath>
 
 #include "engine/report/snapshots.hpp"
-#include "engine/scene/checks/parse.hpp"
-#include "engine/scene/format/json_text.hpp"
-#include "engine/store/disk/apart.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/file_system.hpp"
 #include "engine/store/disk/publish.hpp"
 #include "engine/store/files/job_folder.hpp"
-#include "engine/store/files/series_file.hpp"
+#include "engine/store/files/job_paths.hpp"
 #include "engine/store/read/filter.hpp"
+#include "engine/store/read/job_reader.hpp"
 
 namespace sluice {
 namespace {
-
-/// Far more than any text of a job needs.
-constexpr std::size_t kMaxTextBytes = 1024 * 1024;
 
 bool is_filtered(const Series& series) { return series.kind == "pressure" && series.size() > 0; }
 
@@ -121,11 +116,6 @@ const Reference* experiment_of(const Scene& scene) {
   return &reference_of(scene.reference->experiment);
 }
 
-std::vector<Series> read_series_of(const JobPaths& paths, const Scene& scene) {
-  if (scene.sensors.empty() || !is_present(paths.series())) return {};
-  return read_harmless(paths.series(), [&] { return read_series(paths.series()); });
-}
-
 }  // namespace
 
 std::optional<double> Report::error() const {
@@ -149,38 +139,8 @@ Report make_report(const Scene& scene, const std::vector<Series>& series,
   return report;
 }
 
-nlohmann::ordered_json read_outcome(const std::filesystem::path& folder) {
-  const JobPaths paths(folder);
-  if (!is_present(paths.outcome())) return nullptr;
-  const std::string text = read_text(paths.outcome(), kMaxTextBytes, Links::refuse);
-  try {
-    return read_stored_json(text);
-  } catch (const std::runtime_error&) {
-    return nullptr;
-  }
-}
-
-Scene read_job_scene(const std::filesystem::path& folder) {
-  ParseResult parsed =
-      parse_job_scene(read_text(JobPaths(folder).scene(), kMaxTextBytes, Links::refuse));
-  if (!parsed.scene) throw SceneError(parsed.problems.front());
-  return *std::move(parsed.scene);
-}
-
-JobRecord read_job(const std::filesystem::path& folder) {
-  const JobPaths paths(folder);
-  if (!JobFolder::holds_job(folder)) {
-    throw StorageError(
-        StorageFault::not_ours,
-        fmt::format("{}: holds no job; name a folder that `sluice run` made", folder.string()));
-  }
-  Scene scene = read_job_scene(folder);
-  std::vector<Series> series = read_series_of(paths, scene);
-  return {std::move(scene), std::move(series), read_outcome(folder)};
-}
-
 Report report_of_folder(const std::filesystem::path& folder, double tau) {
-  const JobRecord job = read_job(folder);
+  const JobRecord job = JobReader(folder).record();
   return make_report(job.scene, job.series, job.outcome, tau);
 }
 
@@ -194,7 +154,7 @@ std::vector<Snapshot> picture_snapshots(const std::filesystem::path& folder, con
 
 void publish_report(const std::filesystem::path& folder, const std::filesystem::path& target,
                     double tau) {
-  const JobRecord job = read_job(folder);
+  const JobRecord job = JobReader(folder).record();
   const Report report = make_report(job.scene, job.series, job.outcome, tau);
   const JobPaths paths(target);
   // Another folder than the job's own is its user's, whose links are meant.
@@ -213,8 +173,7 @@ bool publish_missing_report(const std::filesystem::path& folder) {
            is_present(paths.report_html());
   };
   if (has_all()) return true;
-  const nlohmann::ordered_json outcome = read_outcome(folder);
-  if (!outcome.is_object() || outcome.value("state", "") != "completed") return false;
+  if (!JobReader(folder).completed()) return false;
   const JobFolder held = JobFolder::open(folder);  // nobody else writes here meanwhile
   publish_report(folder, folder);
   return true;

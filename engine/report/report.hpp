@@ -52,21 +52,8 @@ struct Report {
                                  const nlohmann::ordered_json& outcome,
                                  double tau = kComparisonTau);
 
-/// What is read of a job folder: scene.json and, where there are, series.h5 and outcome.json. The
-/// run may be going on, or have ended before its first sample. No link is followed.
-struct JobRecord {
-  Scene scene;
-  std::vector<Series> series;
-  nlohmann::ordered_json outcome;
-};
-
-/// outcome.json; null where there is none, discarded where it cannot be read as JSON.
-[[nodiscard]] nlohmann::ordered_json read_outcome(const std::filesystem::path& folder);
-/// Throws SceneError for a scene that cannot be read.
-[[nodiscard]] Scene read_job_scene(const std::filesystem::path& folder);
 /// Throws StorageError when the folder holds no job or its series cannot be read, and SceneError
 /// for a scene that cannot.
-[[nodiscard]] JobRecord read_job(const std::filesystem::path& folder);
 [[nodiscard]] Report report_of_folder(const std::filesystem::path& folder,
                                       double tau = kComparisonTau);
 

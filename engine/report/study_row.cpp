@@ -4,6 +4,7 @@
 #include "engine/run/exit_code.hpp"
 #include "engine/scene/format/canonical.hpp"
 #include "engine/store/files/job_folder.hpp"
+#include "engine/store/read/job_reader.hpp"
 #include "engine/study/report_row.hpp"
 
 namespace sluice {
@@ -25,20 +26,20 @@ StudyRow read_row(const std::filesystem::path& folder, const StudyRun& run) {
   if (!JobFolder::holds_job(folder)) return row;
   row.state = RunState::stopped;
   try {
-    const auto outcome = read_outcome(folder);
+    const JobReader job(folder);
+    const auto outcome = job.outcome();
     if (outcome.is_object()) {
       const RunFacts facts = run_facts(outcome);
       row.state = state_of(facts, outcome);
       row.reason = facts.reason;
     }
     // A finished run of another scene, or to an earlier end, is not this run.
-    if (canonical_text(read_job_scene(folder)) != canonical_text(run.scene)) {
+    if (canonical_text(job.scene()) != canonical_text(run.scene)) {
       row.state = RunState::stopped;
       row.reason = "the study has changed since this run";
     }
     if (row.state != RunState::completed) return row;
-    const JobRecord job = read_job(folder);
-    return row_of_report(report_json(make_report(job.scene, job.series, job.outcome)));
+    return row_of_report(report_json(make_report(job.scene(), job.series(), outcome)));
   } catch (const std::exception& error) {
     row.state = RunState::stopped;
     row.reason = error.what();

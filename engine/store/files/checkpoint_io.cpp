@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include "engine/scene/format/canonical.hpp"
 #include "engine/store/disk/publish.hpp"
+#include "engine/store/files/digest.hpp"
 #include "engine/store/files/layout.hpp"
 #include "engine/store/files/rules.hpp"
 
@@ -20,12 +22,18 @@ constexpr std::size_t kDigits = 12;
 std::uint64_t expected_bytes(const Checkpoint& checkpoint) {
   std::uint64_t bytes = file_bytes(checkpoint.samples);
   for (const Field& field : kFields) {
-    bytes += (checkpoint.solver.particles.*field.member).size() * sizeof(double);
+    bytes += field.values.of(checkpoint.solver.particles).size() * sizeof(double);
   }
   return bytes;
 }
 
-void require_expected(const Checkpoint& checkpoint, const CheckpointIdentity& identity) {
+}  // namespace
+
+CheckpointIdentity identity_of(const Scene& scene) {
+  return {scene_hash(identity_text(scene)), scene.method.integrator};
+}
+
+void require_identity(const Checkpoint& checkpoint, const CheckpointIdentity& identity) {
   if (identity.scene_hash && *identity.scene_hash != checkpoint.scene_hash) {
     throw StorageError(
         StorageFault::wrong_scene,
@@ -38,8 +46,6 @@ void require_expected(const Checkpoint& checkpoint, const CheckpointIdentity& id
                        "of a run with another integrator than the scene asks for");
   }
 }
-
-}  // namespace
 
 std::string checkpoint_name(std::uint64_t step) {
   return fmt::format("{}{:0{}}{}", kPrefix, step, kDigits, kSuffix);
@@ -72,7 +78,7 @@ Checkpoint decode_checkpoint(ByteSpan image, const CheckpointIdentity& identity)
   Checkpoint checkpoint;
   const std::uint64_t version = walk_format(archive, kCheckpointFormat);
   walk_identity(archive, checkpoint);
-  require_expected(checkpoint, identity);
+  require_identity(checkpoint, identity);
   walk_physics(archive, checkpoint, CheckpointLayout::of_version(version));
   archive.require_all_met();
   require_sound(checkpoint, StorageFault::corrupt);

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/scene/model/scene.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/disk/file_system.hpp"
 #include "engine/store/files/checkpoint.hpp"
@@ -22,6 +23,11 @@ struct CheckpointIdentity {
   std::optional<std::string> scene_hash;
   std::optional<Integrator> integrator;
 };
+
+/// That of a run of this scene.
+[[nodiscard]] CheckpointIdentity identity_of(const Scene& scene);
+/// Throws StorageError(wrong_scene) for a checkpoint of another scene or integrator.
+void require_identity(const Checkpoint& checkpoint, const CheckpointIdentity& identity);
 
 /// The HDF5 image of a checkpoint; equal checkpoints give equal bytes. Throws StorageError:
 /// invalid_content when a carried field has the wrong length, a number is not finite or a series

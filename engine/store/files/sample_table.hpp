@@ -35,6 +35,12 @@ struct SampleTable {
 /// A sensor's series as a table of its own, at place 0.
 [[nodiscard]] SampleTable table_of(const Series& series);
 
+/// The samples that a checkpoint holds in the tables of the scene's sensors, which are `empty`: the
+/// first versions kept each sensor by itself. Throws StorageError(corrupt) where they are not of
+/// the same sensors.
+[[nodiscard]] std::vector<SampleTable> in_tables_like(const std::vector<SampleTable>& empty,
+                                                      std::vector<SampleTable> found);
+
 /// One series per sensor, in the order of the scene's list. The tables must be sound
 /// (engine/store/files/rules.hpp).
 [[nodiscard]] std::vector<Series> split(const std::vector<SampleTable>& tables);
