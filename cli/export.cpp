@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -46,22 +48,37 @@ void export_vtk(const std::vector<fs::path>& frames, const fs::path& output) {
   fmt::print("{}: {} frames; open it with ParaView\n", target.string(), frames.size());
 }
 
+/// A unit in a column's name: m/s becomes m_s.
+std::string unit_word(std::string_view unit) {
+  std::string word(unit);
+  std::replace(word.begin(), word.end(), '/', '_');
+  return word;
+}
+
+std::string csv_text(const Snapshot& frame) {
+  std::string text = "time_s,id";
+  for (const SnapshotField& field : kSnapshotFields) {
+    text += fmt::format(",{}_{}", field.name, unit_word(field.unit));
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    text += fmt::format("{},{},{},{},{}\n", frame.time, frame.id[i],
+                        fmt::join(frame.position_of(i), ","), fmt::join(frame.velocity_of(i), ","),
+                        frame.pressure[i]);
+  }
+  return text;
+}
+
 void export_csv(const std::vector<fs::path>& frames, const fs::path& output) {
   for (const fs::path& path : frames) {
     const Snapshot frame = read_harmless_snapshot(path);
-    std::string text = "time_s,id,x_m,y_m,vx_m_s,vy_m_s,pressure_Pa\n";
-    for (std::size_t i = 0; i < frame.x.size(); ++i) {
-      const Vec place = frame.position(i);
-      text += fmt::format("{},{},{},{},{},{},{}\n", frame.time, frame.id[i], place.x(), place.y(),
-                          frame.vx[i], frame.vy[i], frame.pressure[i]);
-    }
-    publish_text(output / path.filename().replace_extension(".csv"), text);
+    publish_text(output / path.filename().replace_extension(".csv"), csv_text(frame));
   }
   fmt::print("{}: {} files\n", output.string(), frames.size());
 }
 
 void export_snapshots(const ExportArguments& arguments) {
-  const JobData job(arguments.folder);
+  const JobReader job = job_or_end(arguments.folder);
   const std::vector<fs::path> frames = job.paths().snapshot_files();
   if (frames.empty()) {
     throw CommandEnd(ExitCode::usage,

@@ -152,7 +152,7 @@ void add_test_options(CLI::App& verb, RunArguments& arguments) {
       ->excludes(every)
       ->group(group);
   verb.add_option("--storage-patience", arguments.storage_patience,
-                  "Seconds to go on trying when the disk is full or refuses")
+                  "Seconds to keep trying when the disk is full or refuses")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str()
       ->group(group);
@@ -162,7 +162,7 @@ void add_test_options(CLI::App& verb, RunArguments& arguments) {
 
 void add_run(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
-  CLI::App* verb = app.add_subcommand("run", "Run a scene, or go on with the job in a folder");
+  CLI::App* verb = app.add_subcommand("run", "Run a scene, or resume the job in a folder");
   verb->add_option("target", arguments->target, "A scene (JSON) or a job's folder")
       ->required()
       ->check(existing_or_stdin());

@@ -69,14 +69,14 @@ std::string next_commands(const JobFolder& folder, const Scene& scene, const Out
   const fs::path root = folder.name();
   std::string text;
   // A numerical failure would only come again.
-  const bool can_go_on =
+  const bool can_resume =
       outcome.exit_code == ExitCode::checkpointed || outcome.exit_code == ExitCode::storage_failure;
   std::error_code ignored;
   const bool has_scene = fs::exists(folder.paths().scene(), ignored);
-  if (can_go_on && !has_scene) {
+  if (can_resume && !has_scene) {
     text += "  scene.json was removed meanwhile: put the scene of this run back under that name\n";
   }
-  if (can_go_on) text += fmt::format("  to go on:   sluice run {}\n", shell_path(root));
+  if (can_resume) text += fmt::format("  to resume:  sluice run {}\n", shell_path(root));
   const auto checkpoints = folder.paths().checkpoints();
   if (!checkpoints.empty()) {
     text += fmt::format("  to look in: sluice inspect {}\n",

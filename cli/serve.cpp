@@ -172,7 +172,7 @@ void add_serve(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("serve", "Run jobs for others: the HTTP service");
   add_serve_options(*verb, *options);
   verb->footer(
-      "SIGTERM or Ctrl-C stops: running jobs write a checkpoint and go on at the next start; "
+      "SIGTERM or Ctrl-C stops: running jobs write a checkpoint and resume at the next start; "
       "once more after two seconds: at once.\nExample: sluice serve --data jobs --port 8080");
   verb->callback([options] { serve_or_end(*options); });
 }

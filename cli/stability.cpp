@@ -150,7 +150,7 @@ void stability(const StabilityArguments& arguments) {
   } catch (const SuiteStopped& stopped) {
     throw CommandEnd(ExitCode::checkpointed,
                      fmt::format("{}: cases without a line above have no verdict; name them to "
-                                 "go on",
+                                 "resume",
                                  stopped.what()));
   }
 }

@@ -186,7 +186,7 @@ class StudyRunner {
   }
 
   void stop() {
-    if (!stopping_) say("stopping: what runs writes a checkpoint; run the study again to go on");
+    if (!stopping_) say("stopping: what runs writes a checkpoint; run the study again to resume");
     stopping_ = true;
     pool_.stop_all();
   }
@@ -310,7 +310,7 @@ void add_study(CLI::App& app) {
                    "that was submitted")
       ->required();
   verb->add_option("--folder", arguments->folder,
-                   "Where its runs and results go, and where it goes on; by default the study's "
+                   "Where its runs and results go, and where it resumes; by default the study's "
                    "name in this folder");
   verb->add_option("--cores", arguments->cores, "Cores to use; by default all")
       ->check(whole_between(1, 1024));
@@ -322,7 +322,7 @@ void add_study(CLI::App& app) {
   add_service_study_options(*verb, arguments->service);
   verb->footer(
       "The folder then holds results.md, results.csv, results.json and error-cost.svg. Stop it "
-      "with\nCtrl-C (exit 85); the same command goes on.\nExample: sluice study "
+      "with\nCtrl-C (exit 85); the same command resumes.\nExample: sluice study "
       "schemas/examples/study-quick.json --folder first-study\n"
       "         sluice study schemas/examples/study-quick.json --server http://127.0.0.1:8080 "
       "--watch");

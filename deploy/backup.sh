@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Copies a data folder of the service, also while it runs: jobs go on undisturbed, and a restored job
-# goes on from its last checkpoint in the copy, bit by bit. Needs sqlite3.
+# resumes from its last checkpoint in the copy, bit by bit. Needs sqlite3.
 #
 #   deploy/backup.sh DATA COPY      COPY must not exist; restore it with deploy/restore.sh
 #

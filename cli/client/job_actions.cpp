@@ -226,7 +226,7 @@ void add_action(CLI::App& app, const char* name, const char* help, const Action&
 }  // namespace
 
 void add_cancel(CLI::App& app) {
-  add_action(app, "cancel", "End a service's job; its files stay, and resume goes on with it",
+  add_action(app, "cancel", "End a service's job; its files stay, and it can be resumed",
              {&cancel});
 }
 
@@ -241,7 +241,7 @@ void add_resume(CLI::App& app) {
   Action action{&resume};
   action.takes_end_time = true;
   add_action(app, "resume",
-             "Let a paused or cancelled job of a service go on, or an ended one for longer",
+             "Resume a paused or cancelled job of a service, or an ended one to a later end",
              action);
 }
 

@@ -40,7 +40,7 @@ void watch(ServiceClient& service, const std::string& id) {
   HttpRequest request;
   request.target = study_target(id);
   const Patience patience = patience_on_stderr(
-      kStudyRetry, "the study goes on where its service is; watch it again with --watch");
+      kStudyRetry, "the study continues where its service is; watch it again with --watch");
   std::map<std::string, std::string> known;
   while (true) {
     const Json study = service.object_of(service.ask_patiently(request, patience));

@@ -31,7 +31,7 @@ constexpr double kFirstTry = 10.0;  // s for a service that never answered yet
 /// Ctrl-C leaves the job alone; says so, because it is not what `sluice run` does.
 void leave(int signal) {
   constexpr std::string_view kText =
-      "\nsluice: no longer watching; the job goes on. Watch it again, or stop it with sluice "
+      "\nsluice: no longer watching; the job continues. Watch it again, or stop it with sluice "
       "pause or sluice cancel\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
   ::_exit(128 + signal);
@@ -49,7 +49,7 @@ std::string next_commands(const ServiceClient& service, const Json& job) {
     return service.command(fmt::format("{} {}", verb, id));
   };
   std::string text;
-  if (state == "paused") text += fmt::format("  to go on:   {}\n", command("resume"));
+  if (state == "paused") text += fmt::format("  to resume:  {}\n", command("resume"));
   if (state == "failed") text += fmt::format("  diagnosis:  {}\n", command("show"));
   for (const char* const verb : {"sensors", "report"}) {
     const std::string words = fmt::format("{} {}", verb, id);
@@ -88,7 +88,7 @@ class Watch {
     Patience patience;
     patience.seconds = reached_ ? options_.retry : std::min(options_.retry, kFirstTry);
     patience.say = [this](const std::string& line) { view_.say(line); };
-    patience.last_words = "the job goes on where its service is; see --server and --retry";
+    patience.last_words = "the job continues where its service is; see --server and --retry";
     const HttpReply reply = service_->ask_patiently(request_, patience);
     reached_ = true;
     if (reply.status == 304) return {};
@@ -118,7 +118,7 @@ void watch(const WatchArguments& arguments) {
   WatchOptions options = arguments.watch;
   if (arguments.json) options.form = WatchForm::json;
   const Patience patience = patience_on_stderr(
-      std::min(options.retry, kFirstTry), "the job goes on where its service is; see --server");
+      std::min(options.retry, kFirstTry), "the job continues where its service is; see --server");
   watch_job(service, job_named(service, arguments.id, patience), options);
 }
 
@@ -132,7 +132,7 @@ void add_watch_options(CLI::App& verb, WatchOptions& options) {
   verb.add_option("--interval", options.interval, "Seconds between lines of progress")
       ->check(number_from_zero())
       ->capture_default_str();
-  verb.add_option("--retry", options.retry, "Seconds to go on trying while no service answers")
+  verb.add_option("--retry", options.retry, "Seconds to keep trying while no service answers")
       ->check(number_between(0.0, 1e9))
       ->capture_default_str();
 }

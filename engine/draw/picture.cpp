@@ -168,13 +168,13 @@ void draw_gate(Picture& picture, const Scene& scene, const PictureView& how, dou
 
 void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& how) {
   Canvas canvas(picture, how);
-  for (std::size_t i = 0; i < frame.x.size(); ++i) {
-    canvas.disc(frame.position(i), index_of(coloured_value(frame, i, how.quantity), how));
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    canvas.disc(frame.position_of(i), index_of(coloured_value(frame, i, how.quantity), how));
   }
 }
 
 float coloured_value(const Snapshot& frame, std::size_t i, Quantity quantity) {
-  return quantity == Quantity::pressure ? frame.pressure[i] : std::hypot(frame.vx[i], frame.vy[i]);
+  return quantity == Quantity::pressure ? frame.pressure[i] : frame.velocity_of(i).norm();
 }
 
 const std::array<Rgb, 256>& picture_palette() {

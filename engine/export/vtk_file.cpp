@@ -37,8 +37,15 @@ void write_cells(Hdf5Writer& writer, std::size_t count) {
   writer.write(kRoot + "/Types", std::span<const std::uint8_t>(types), {count});
 }
 
+/// VTK's points and vectors have three components in the plane as well.
+template <class Vector, class Scalar>
+void append_padded(std::vector<Scalar>& to, const Vector& vector) {
+  to.insert(to.end(), vector.begin(), vector.end());
+  to.insert(to.end(), static_cast<std::size_t>(3 - vector.size()), Scalar{0});
+}
+
 void write_points(Hdf5Writer& writer, const Snapshot& frame) {
-  const std::size_t count = frame.x.size();
+  const std::size_t count = frame.size();
   std::vector<double> points;
   std::vector<float> velocities;
   std::vector<std::int64_t> ids;
@@ -46,9 +53,8 @@ void write_points(Hdf5Writer& writer, const Snapshot& frame) {
   velocities.reserve(3 * count);
   ids.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec place = frame.position(i);
-    points.insert(points.end(), {place.x(), place.y(), 0.0});
-    velocities.insert(velocities.end(), {frame.vx[i], frame.vy[i], 0.0F});
+    append_padded(points, frame.position_of(i));
+    append_padded(velocities, frame.velocity_of(i));
     ids.push_back(static_cast<std::int64_t>(frame.id[i]));
   }
   writer.write(kRoot + "/Points", std::span<const double>(points), {count, 3});
@@ -67,11 +73,11 @@ std::string vtk_name(const std::filesystem::path& frame) {
 
 void write_vtk(const std::filesystem::path& path, const Snapshot& frame) {
   constexpr std::uint64_t kBytesPerParticle = 73;
-  Hdf5Writer writer(frame.x.size() * kBytesPerParticle);
+  Hdf5Writer writer(frame.size() * kBytesPerParticle);
   writer.create_group(kRoot);
   writer.set_attribute(kRoot, "Version", std::span<const std::int64_t>(kVersion));
   writer.set_ascii(kRoot, "Type", "UnstructuredGrid");
-  write_cells(writer, frame.x.size());
+  write_cells(writer, frame.size());
   write_points(writer, frame);
   const Bytes image = writer.image();
   publish_text(path, {reinterpret_cast<const char*>(image.data()), image.size()});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/space/axes.hpp"
 #include "engine/store/read/filter.hpp"
 
 namespace sluice {
@@ -29,16 +30,14 @@ const Series* series_of(const std::vector<Series>& all, const Sensor& sensor) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// The first sensor of a kind near a place of the experiment, given in its own metres.
-const Sensor* sensor_at(const Scene& scene, const Reference& reference, SensorKind kind, double x,
-                        std::optional<double> y) {
-  const double height = scene.scales->height;
+/// The first sensor of a kind near a place of the experiment, given in its own metres; a height is
+/// measured over the whole of its line. Places are the same within 0.02 h0, heights 0.01 h0.
+const Sensor* sensor_at(const Scene& scene, const Reference& reference, SensorKind kind,
+                        const Vec& place) {
   for (const Sensor& sensor : scene.sensors) {
-    const Vec place = sensor.position / height;
-    if (sensor.kind == kind && std::abs(place.x() - x / reference.height) <= 0.02 &&
-        (!y || std::abs(place.y() - *y / reference.height) <= 0.01)) {
-      return &sensor;
-    }
+    Vec apart = sensor.position / scene.scales->height - place / reference.height;
+    apart[kUpAxis] *= kind == SensorKind::surface_height ? 0.0 : 2.0;
+    if (sensor.kind == kind && apart.cwiseAbs().maxCoeff() <= 0.02) return &sensor;
   }
   return nullptr;
 }
@@ -63,8 +62,7 @@ std::vector<PressurePair> pair_pressures(const Scene& scene, const std::vector<S
                                          const Reference& reference, double tau) {
   std::vector<PressurePair> pairs;
   for (const PressureReference& one : reference.pressures) {
-    const Sensor* sensor =
-        sensor_at(scene, reference, SensorKind::pressure, reference.tank_width, one.height);
+    const Sensor* sensor = sensor_at(scene, reference, SensorKind::pressure, one.place);
     const Series* series = sensor != nullptr ? series_of(all, *sensor) : nullptr;
     if (series != nullptr) pairs.push_back({&one, sensor, pressure_curve(*series, scene, tau)});
   }
@@ -83,7 +81,7 @@ PressureComparison weigh(PressurePair pair, const Scene& scene, const Reference&
   for (double& time : pair.curve.time) time += shift;
   const auto averages = interval_averages(pair.curve, reference.pressure_times);
   comparison.sensor = pair.sensor->name;
-  comparison.height = pair.sensor->position.y();
+  comparison.height = pair.sensor->position[kUpAxis];
   comparison.smoothing_length = pair.sensor->smoothing_length > 0.0 ? pair.sensor->smoothing_length
                                                                     : scene.method.smoothing_length;
   comparison.air_pressure = pair.sensor->air_pressure;
@@ -131,8 +129,7 @@ void compare_levels(Comparison& comparison, const Scene& scene, const std::vecto
   const Reference& reference = *comparison.reference;
   const Window everything{-1.0, reference.level_times.centers().back() + 1.0};
   for (const LevelReference& one : reference.levels) {
-    const Sensor* sensor =
-        sensor_at(scene, reference, SensorKind::surface_height, one.x, std::nullopt);
+    const Sensor* sensor = sensor_at(scene, reference, SensorKind::surface_height, one.place);
     const Series* series = sensor != nullptr ? series_of(all, *sensor) : nullptr;
     if (series == nullptr) continue;
     Curve curve = scaled_curve(*series, scene, 0.0, scene.scales->height);

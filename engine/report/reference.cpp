@@ -8,6 +8,8 @@
 
 #include "sluice/reference_texts.hpp"
 
+#include "engine/space/axes.hpp"
+
 namespace sluice {
 namespace {
 
@@ -40,7 +42,7 @@ std::vector<PressureReference> read_pressures(const json& file, std::size_t coun
     const json& peak = file.at("peak_statistics").at(name);
     PressureReference sensor;
     sensor.name = name;
-    sensor.height = height.get<double>();
+    sensor.place = {file.at("geometry_m").at("tank").at(0).get<double>(), height.get<double>()};
     sensor.arrival = file.at("event_arrival").at(name).get<double>();
     sensor.values = numbers(file.at("event").at(name), count, name.c_str());
     sensor.peak = {peak.at("median").get<double>(), peak.at("p2.5").get<double>(),
@@ -54,7 +56,7 @@ std::vector<PressureReference> read_pressures(const json& file, std::size_t coun
 /// Mean over the tests, whose columns are named SENSOR_TEST.
 LevelReference read_level(const json& levels, const std::string& name, double x,
                           std::size_t count) {
-  LevelReference level{name, x, std::vector<double>(count, 0.0)};
+  LevelReference level{name, Vec(x, 0.0), std::vector<double>(count, 0.0)};
   double tests = 0.0;
   for (const auto& [column, values] : levels.items()) {
     if (!column.starts_with(name + "_")) continue;
@@ -168,8 +170,7 @@ const Reference& reference_of(std::string_view name) {
 }
 
 const Reference* matching_reference(const Scene& scene) {
-  const Vec& gravity = scene.method.gravity;
-  if (!scene.tank || !scene.scales || gravity.x() != 0.0 || gravity.y() >= 0.0) return nullptr;
+  if (!scene.tank || !scene.scales || !points_straight_down(scene.method.gravity)) return nullptr;
   const double height = scene.scales->height;
   for (const Reference& reference : references()) {
     if (about(scene.tank->width / height, reference.tank_width / reference.height) &&

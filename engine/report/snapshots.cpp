@@ -102,8 +102,8 @@ std::optional<Snapshot> try_snapshot(const fs::path& path) {
 std::optional<Box> particle_box(std::span<const Snapshot> frames) {
   std::optional<Box> box;
   for (const Snapshot& frame : frames) {
-    for (std::size_t i = 0; i < frame.x.size(); ++i) {
-      const Vec place = frame.position(i);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      const Vec place = frame.position_of(i);
       if (place.allFinite()) add_box(box, {place, place});
     }
   }
@@ -136,7 +136,7 @@ Box picture_view(const Scene& scene, const std::optional<Box>& particles) {
 double colour_end(const std::vector<Snapshot>& frames, Quantity quantity) {
   std::vector<float> all;
   for (const Snapshot& frame : frames) {
-    for (std::size_t i = 0; i < frame.x.size(); ++i) {
+    for (std::size_t i = 0; i < frame.size(); ++i) {
       const float value = coloured_value(frame, i, quantity);
       if (std::isfinite(value)) all.push_back(value);
     }

@@ -45,9 +45,11 @@ DropRun run_drop(CaseRunner& bench, int per_radius) {
                  {}};
   if (!result.run.completed() || !result.run.last) return result;
   const SolverState& end = result.run.last->solver;
-  const double at_start = mean_square(create_particles(result.run.scene).state.particles.y);
-  result.point = DropPoint{1.0 / per_radius, std::sqrt(mean_square(end.particles.y) / at_start),
-                           drop_stretch(end.time), static_cast<double>(end.particles.size())};
+  const double at_start =
+      mean_square(create_particles(result.run.scene).state.particles.position[1]);
+  result.point =
+      DropPoint{1.0 / per_radius, std::sqrt(mean_square(end.particles.position[1]) / at_start),
+                drop_stretch(end.time), static_cast<double>(end.particles.size())};
   return result;
 }
 

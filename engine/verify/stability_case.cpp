@@ -15,20 +15,20 @@ constexpr std::size_t kMostDots = 1500;
 std::vector<Dot> picture_of(const Checkpoint& state) {
   const Particles& p = state.solver.particles;
   if (p.size() == 0) return {};
-  Vec low = p.position(0);
+  Vec low = p.position_of(0);
   Vec high = low;
   double fastest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    low = low.cwiseMin(p.position(i));
-    high = high.cwiseMax(p.position(i));
-    fastest = std::max(fastest, std::hypot(p.vx[i], p.vy[i]));
+    low = low.cwiseMin(p.position_of(i));
+    high = high.cwiseMax(p.position_of(i));
+    fastest = std::max(fastest, std::hypot(p.velocity[0][i], p.velocity[1][i]));
   }
   const double size = std::max((high - low).maxCoeff(), 1e-300);
   const std::size_t stride = (p.size() + kMostDots - 1) / kMostDots;
   std::vector<Dot> dots;
   for (std::size_t i = 0; i < p.size(); i += stride) {
-    const Vec at = (p.position(i) - low) / size;
-    const double speed = std::hypot(p.vx[i], p.vy[i]);
+    const Vec at = (p.position_of(i) - low) / size;
+    const double speed = std::hypot(p.velocity[0][i], p.velocity[1][i]);
     dots.push_back({at.x(), at.y(), fastest > 0.0 ? speed / fastest : 0.0});
   }
   return dots;

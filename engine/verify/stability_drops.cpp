@@ -49,16 +49,17 @@ struct PulsingDrop {
 
 /// Kinetic energy and that of the central force, per mass.
 double central_energy(const Particles& p) {
-  return 0.5 * (mean_square(p.x) + mean_square(p.y) + mean_square(p.vx) + mean_square(p.vy));
+  return 0.5 * (mean_square(p.position[0]) + mean_square(p.position[1]) +
+                mean_square(p.velocity[0]) + mean_square(p.velocity[1]));
 }
 
 void pull_to_center(Particles& p, double time) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    p.vx[i] -= time * p.x[i];
-    p.vy[i] -= time * p.y[i];
-    if (p.vx_half.empty()) continue;
-    p.vx_half[i] -= time * p.x[i];
-    p.vy_half[i] -= time * p.y[i];
+    p.velocity[0][i] -= time * p.position[0][i];
+    p.velocity[1][i] -= time * p.position[1][i];
+    if (p.velocity_half[0].empty()) continue;
+    p.velocity_half[0][i] -= time * p.position[0][i];
+    p.velocity_half[1][i] -= time * p.position[1][i];
   }
 }
 
@@ -81,7 +82,7 @@ CaseResult pulsing_drop(CaseRunner& bench) {
   SolverState state = create_particles(*parsed.scene).state;
   Particles& p = state.particles;
   const double energy = central_energy(p);
-  const double radius = std::sqrt(mean_square(p.x));
+  const double radius = std::sqrt(mean_square(p.position[0]));
   double axis_error = 0.0;
   while (state.time < end) {
     Solver solver(method, state, {}, {});
@@ -89,7 +90,7 @@ CaseResult pulsing_drop(CaseRunner& bench) {
     state = solver.state();
     pull_to_center(p, solver.time_step());
     exact.advance(solver.time_step());
-    const double axis = std::sqrt(mean_square(p.x)) / radius;
+    const double axis = std::sqrt(mean_square(p.position[0])) / radius;
     const bool whole = solver.removed().empty();
     axis_error = std::max(axis_error, whole ? std::abs(axis - exact.a) : HUGE_VAL);
     if (!whole) break;

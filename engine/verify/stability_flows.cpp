@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 
 double angular_momentum(const Particles& p) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < p.size(); ++i) sum += p.x[i] * p.vy[i] - p.y[i] * p.vx[i];
+  for (std::size_t i = 0; i < p.size(); ++i)
+    sum += p.position[0][i] * p.velocity[1][i] - p.position[1][i] * p.velocity[0][i];
   return sum;
 }
 
@@ -27,7 +28,7 @@ double closest_pair(const Particles& p) {
   double least = HUGE_VAL;
   for (std::size_t i = 0; i < p.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      least = std::min(least, (p.position(i) - p.position(j)).squaredNorm());
+      least = std::min(least, (p.position_of(i) - p.position_of(j)).squaredNorm());
     }
   }
   return std::sqrt(least);
@@ -105,7 +106,7 @@ CaseResult droplet_at(CaseRunner& bench, double mach, Verdict expected) {
   drop["velocity"] = {0.0, -mach * kDropSound};
   return result_of(
       bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec(3.0, 0.5),
-                           Json::array({drop}), dx, kDropSound, 0.2 / (mach * kSound))),
+                           Json::array({drop}), dx, kDropSound, 0.2 / (mach * kDropSound))),
       expected);
 }
 CaseResult droplet_01(CaseRunner& b) { return droplet_at(b, 0.1, Verdict::stable_with_warnings); }
@@ -132,8 +133,8 @@ CaseResult half_perturbation(CaseRunner& bench) {
 CaseResult coincident_particles(CaseRunner& bench) {
   const CaseRun run =
       bench.run(still_water("coincident", {}), StabilityCheck::refuse, [](Particles& p) {
-        p.x[210] = p.x[211];
-        p.y[210] = p.y[211];
+        p.position[0][210] = p.position[0][211];
+        p.position[1][210] = p.position[1][211];
       });
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
@@ -155,7 +156,7 @@ CaseResult free_fall(CaseRunner& bench) {
   const double t = end.time;
   const Vec exact = Vec(0.005, 0.005) + Vec(t, 2 * t - 0.5 * kGravity * t * t);
   result.figures.push_back(
-      {"place over path", (end.particles.position(0) - exact).norm() / exact.norm(), 1e-12});
+      {"place over path", (end.particles.position_of(0) - exact).norm() / exact.norm(), 1e-12});
   return result;
 }
 

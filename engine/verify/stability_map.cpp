@@ -51,10 +51,10 @@ SolverState noisy_patch(const Method& m, double displacement) {
   const auto off = [&] { return displacement > 0.0 ? displacement * either_way() : 0.0; };
   for (int i = 0; i < kSide * kSide; ++i) {
     p.id.push_back(i);
-    p.x.push_back(m.spacing * (i % kSide + off()));
-    p.y.push_back(m.spacing * (i / kSide + off()));
-    p.vx.push_back(noise());
-    p.vy.push_back(noise());
+    p.position[0].push_back(m.spacing * (i % kSide + off()));
+    p.position[1].push_back(m.spacing * (i / kSide + off()));
+    p.velocity[0].push_back(noise());
+    p.velocity[1].push_back(noise());
     p.density_excess.push_back(0.0);
   }
   return state;

@@ -67,12 +67,12 @@ std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& re
   } catch (const StorageError& error) {
     if (error.fault() == StorageFault::io) throw;  // it may be whole
     report(paths.root(), fmt::format("outcome.json is none of ours, so the job is taken for one "
-                                     "that goes on: {}",
+                                     "that resumes: {}",
                                      error.what()));
     return std::nullopt;
   } catch (const std::exception& error) {
     report(paths.root(), fmt::format("outcome.json cannot be read, so the job is taken for one "
-                                     "that goes on: {}",
+                                     "that resumes: {}",
                                      error.what()));
     return std::nullopt;
   }
@@ -109,7 +109,7 @@ void describe_file(Job& job, const JobFile& file) {
   if (file.created_ms > 0) job.created_ms = file.created_ms;
 }
 
-std::string where_it_goes_on(const JobPaths& paths) {
+std::string where_it_resumes(const JobPaths& paths) {
   const std::vector<fs::path> checkpoints = paths.checkpoints();
   return checkpoints.empty() ? "from the start"
                              : fmt::format("from {}", checkpoints.front().filename().string());
@@ -148,8 +148,8 @@ void decide_state(Job& job, const JobPaths& paths, const std::optional<JobFile>&
     job.ended_ms = std::max<std::int64_t>(write_time_ms(last), 1);
     job.reason = reason_of(job, ending);
   } else {
-    job.reason = fmt::format("its row was made anew from its folder; it goes on {}{}",
-                             where_it_goes_on(paths),
+    job.reason = fmt::format("its row was made anew from its folder; it resumes {}{}",
+                             where_it_resumes(paths),
                              job.state == JobState::paused ? " when it is resumed" : "");
   }
 }

@@ -97,7 +97,7 @@ std::string advice(const Job& job, JobAction action) {
     return "wait until it is cancelled, then resume it";
   }
   if (would_fail_again(job)) return "it has ended, and " + std::string(kFailsAgain);
-  if (is_ended(job.state)) return "it has ended; resume it with a later end time to go on";
+  if (is_ended(job.state)) return "it has ended; resume it with a later end time";
   return "see the table of transitions in service/README.md";
 }
 

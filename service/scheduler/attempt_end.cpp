@@ -124,7 +124,7 @@ AttemptVerdict stopped(const AttemptFacts& facts, int crash_limit) {
       return verdict(facts, JobAction::requeue, "");
     case StopCause::wall_limit:
       return verdict(facts, JobAction::pause,
-                     "it ran as long as one attempt may; resume it to go on from there");
+                     "it ran as long as one attempt may; resume it from there");
     case StopCause::disk_low:
       return verdict(facts, JobAction::pause,
                      "the disk of the service is nearly full; make room, then resume it");

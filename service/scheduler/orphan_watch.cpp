@@ -46,7 +46,7 @@ void OrphanWatch::kill_when_late(Orphan& orphan, double now) const {
   const bool ours = kill_orphan(paths(data_, orphan.job), orphan.job.token);
   log_scheduler(fmt::format("job {}: {}", orphan.job.id,
                             ours ? "a worker of the last service did not stop and was killed"
-                                 : "another process uses its folder; it goes on when that ends"));
+                                 : "another process uses its folder; it resumes when that ends"));
 }
 
 int OrphanWatch::threads() const {

@@ -63,7 +63,7 @@ void SchedulerLoop::run() {
       if (!std::exchange(recovered, true)) recover();
       one_round();
     } catch (const std::exception& error) {
-      log_scheduler(fmt::format("the scheduler goes on after an error: {}", error.what()));
+      log_scheduler(fmt::format("the scheduler continues after an error: {}", error.what()));
       ::poll(nullptr, 0, static_cast<int>(1000 * kTick));
     }
   }

@@ -21,8 +21,7 @@ PictureView unit_square(int pixels) {
 
 Snapshot frame_of(std::vector<float> x, std::vector<float> y, std::vector<float> pressure) {
   Snapshot frame;
-  frame.x = std::move(x);
-  frame.y = std::move(y);
+  frame.position = {std::move(x), std::move(y)};
   frame.pressure = std::move(pressure);
   return frame;
 }

@@ -19,7 +19,7 @@ TEST(VtkFile, HasTheLayoutThatParaViewReads) {
   }
   const TemporaryFolder folder;
   Snapshot frame = make_test_snapshot(100000);
-  frame.origin_x = 1e5;
+  frame.origin.x() = 1e5;
   write_vtk(folder / vtk_name("frames/frame-000012.h5"), frame);
   write_vtk(folder / "empty.hdf", Snapshot{});
   const fs::path script = fs::path(__FILE__).parent_path() / "check_vtk.py";

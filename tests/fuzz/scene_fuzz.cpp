@@ -36,7 +36,8 @@ void require_same_when_read_again(const Scene& scene) {
 
 void require_finite_particles(const Scene& scene) {
   try {
-    for (const double x : create_particles(scene).state.particles.x) {
+    const Particles particles = create_particles(scene).state.particles;
+    for (const double x : particles.position[0]) {
       require(std::isfinite(x), "a particle is somewhere");
     }
   } catch (const SceneError& error) {

@@ -64,10 +64,8 @@ class Folder {
   void add(std::uint64_t index, float x) const {
     Snapshot frame;
     frame.time = 0.1 * static_cast<double>(index);
-    frame.x = {x};
-    frame.y = {0.1F};
-    frame.vx = {3.0F};
-    frame.vy = {4.0F};
+    append(frame.position, std::array{x, 0.1F});
+    append(frame.velocity, std::array{3.0F, 4.0F});
     frame.pressure = {1000.0F};
     frame.id = {0};
     write_snapshot(path_ / "frames" / snapshot_name(index), frame, Durability::process_crash);
@@ -147,10 +145,11 @@ TEST(Picture, FarFromZeroCountsItsAxisFromWholeMetres) {
   scene.gate.reset();
   scene.obstacles.clear();
   Snapshot frame;
-  frame.origin_x = 1e5;
-  frame.x = {0.0F, 0.6F};
-  frame.y = {0.0F, 0.3F};
-  frame.vx = frame.vy = frame.pressure = {0.0F, 0.0F};
+  frame.origin.x() = 1e5;
+  frame.position[0] = {0.0F, 0.6F};
+  frame.position[1] = {0.0F, 0.3F};
+  frame.pressure = {0.0F, 0.0F};
+  frame.velocity.fill(frame.pressure);
   frame.id = {0, 1};
   const std::string svg = picture_svgs(report_of(scene), {frame}).at(0);
   EXPECT_NE(svg.find(">x - 99999 m, m<"), std::string::npos);

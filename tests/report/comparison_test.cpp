@@ -82,11 +82,11 @@ Reference made_up_reference() {
   const Intervals level_times(tenths(0.0, 6.0));
   PressureReference wall;
   wall.name = "P1";
-  wall.height = 0.003;
+  wall.place = {1.61, 0.003};
   wall.arrival = 2.505;
   wall.values = interval_averages(curve_of(impact), pressure_times);
   wall.peak = {1.0, 0.5, 1.5};
-  LevelReference level{"H1", 0.3, std::vector<double>(level_times.size(), 0.5)};
+  LevelReference level{"H1", Vec(0.3, 0.0), std::vector<double>(level_times.size(), 0.5)};
   return {.name = "made_up",
           .title = "",
           .citation = "",

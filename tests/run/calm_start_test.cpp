@@ -57,7 +57,7 @@ void expect_calm(const json& text, const Vec& sensor, double area, double level 
     ASSERT_NEAR(pressure, right, 0.05 * full) << "at " << solver.time() << " s";
     if (solver.time() < unit) continue;
     sum += solver.time_step() * pressure;
-    heights += solver.time_step() * solver.surface_height_at(sensor.x()).value;
+    heights += solver.time_step() * solver.surface_height_at(sensor).value;
     time += solver.time_step();
   }
   EXPECT_NEAR(sum / time, right, 0.0125 * full);
@@ -122,7 +122,8 @@ TEST(CalmStart, IsReportedWhereParticlesWerePacked) {
   ASSERT_TRUE(packed.packing());
   EXPECT_GT(packed.packing()->iterations, 1);
   const Simulation again(packed.scene(), {2, ""});
-  EXPECT_EQ(again.solver().state().particles.x, packed.solver().state().particles.x);
+  EXPECT_EQ(again.solver().state().particles.position[0],
+            packed.solver().state().particles.position[0]);
   const Simulation resumed(packed.scene(), {1, ""}, packed.checkpoint());
   EXPECT_FALSE(resumed.packing()) << "a restart makes walls alone";
   EXPECT_EQ(resumed.solver().wall_count(), packed.solver().wall_count());

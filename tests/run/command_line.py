@@ -236,7 +236,7 @@ class Folders(Sandbox):
 
     def test_nothing_is_advised_after_a_failure_that_would_come_again(self):
         said = self.expect(4, "run", self.write_scene(failing_scene()), "--folder", "job").stderr
-        self.assertNotIn("to go on", said)
+        self.assertNotIn("to resume", said)
 
     def test_another_scene_is_refused_with_the_keys_that_differ(self):
         self.expect(85, "run", self.write_scene(), "--folder", "job", "--stop-after-step", 1)

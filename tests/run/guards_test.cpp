@@ -177,8 +177,8 @@ TEST(Guards, CountWhatLeftWithTheEnergyOfTheFluid) {
 TEST(EnergyThatLeft, IsAllOfALeakButThePotentialEnergyAloneOfAnExclusion) {
   const Method method = paper_method();
   RemovedParticle removed;
-  removed.y = -2.0;
-  removed.vx = 3.0;
+  removed.position.y() = -2.0;
+  removed.velocity.x() = 3.0;
   removed.cause = RemovalCause::leaked;
   const double mass = method.particle_mass();
   EXPECT_DOUBLE_EQ(energy_that_left(method, removed), mass * (4.5 - 2.0 * 9.81));
@@ -199,8 +199,8 @@ TEST(EnergyScale, OfAColumnIsItsPotentialEnergyAboveItsFoot) {
   SolverState state;
   // Two particles 1 m apart, the lower 5 m above y = 0: lifted by 1 m together, and each by half a
   // spacing above the foot.
-  state.particles.x = {0.0, 0.0};
-  state.particles.y = {5.0, 6.0};
+  state.particles.position[0] = {0.0, 0.0};
+  state.particles.position[1] = {5.0, 6.0};
   Energy energy;
   const Method method = paper_method();
   energy.potential = method.particle_mass() * 9.81 * 11.0;
@@ -212,8 +212,8 @@ TEST(EnergyScale, OfAColumnIsItsPotentialEnergyAboveItsFoot) {
 
 TEST(EnergyScale, OfAFluidAtRestWithoutGravityIsNotZero) {
   SolverState state;
-  state.particles.x = {0.0};
-  state.particles.y = {0.0};
+  state.particles.position[0] = {0.0};
+  state.particles.position[1] = {0.0};
   Method method = paper_method();
   method.gravity = Vec::Zero();
   const GuardBaselines base = initial_baselines(method, state, Energy{});

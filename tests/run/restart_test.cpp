@@ -148,7 +148,7 @@ TEST_P(ExactRestart, TellsRunsApartThatDifferInOneParticleByAMillionthOfASpacing
   Simulation simulation(scene(), {1, ""});
   for (int step = 0; step < 30; ++step) simulation.step();
   Checkpoint kept = simulation.checkpoint();
-  kept.solver.particles.x.back() += 1e-6 * scene().method.spacing;
+  kept.solver.particles.position[0].back() += 1e-6 * scene().method.spacing;
   Simulation nudged(scene(), {1, ""}, kept);
   run_to_end(nudged);
   EXPECT_NE(digests(nudged).front(), run_uninterrupted(scene()).digests.front());

@@ -28,10 +28,8 @@ Solver fluid_at(const Scene& scene, const std::vector<Vec>& places, double press
   for (const Vec& place : places) {
     Particles& p = state.particles;
     p.id.push_back(static_cast<double>(p.size()));
-    p.x.push_back(place.x());
-    p.y.push_back(place.y());
-    p.vx.push_back(0.0);
-    p.vy.push_back(0.0);
+    append(p.position, place);
+    append(p.velocity, Vec(Vec::Zero()));
     p.density_excess.push_back(pressure / (c * c));
   }
   return {scene.method, state, {}, {}};

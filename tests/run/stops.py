@@ -120,7 +120,7 @@ class Runs(Stopped):
                 self.assertEqual(process.wait(), 85)
                 self.assertLess(time.monotonic() - asked, 30.0)
                 said = process.stderr.read()
-                match = re.search(r"it goes on from (checkpoint-\d{12}\.h5)", said)
+                match = re.search(r"it resumes from (checkpoint-\d{12}\.h5)", said)
                 self.assertTrue(match, said)
                 again = self.start("run", name, "--threads", 1)
                 self.assertEqual(self.wait_for(again, "resumed")["file"], match[1])

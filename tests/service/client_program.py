@@ -400,7 +400,7 @@ class Watching(Case):
         self.read_until(watch.stdout, "%")
         watch.send_signal(signal.SIGINT)
         self.assertEqual(watch.wait(), 128 + signal.SIGINT)
-        self.assertIn("the job goes on", watch.stderr.read())
+        self.assertIn("the job continues", watch.stderr.read())
         self.assertEqual(server.ask("GET", f"/v1/jobs/{job}").json()["state"], "running")
 
     def test_a_reader_that_goes_away_ends_the_watching(self):

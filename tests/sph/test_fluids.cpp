@@ -60,30 +60,28 @@ SolverState start_from(const Fluid& fluid) {
   SolverState state;
   Particles& p = state.particles;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    p.x.push_back(fluid.x[i].x());
-    p.y.push_back(fluid.x[i].y());
-    p.vx.push_back(fluid.v[i].x());
-    p.vy.push_back(fluid.v[i].y());
+    append(p.position, fluid.x[i]);
+    append(p.velocity, fluid.v[i]);
     p.density_excess.push_back(fluid.excess[i]);
     p.id.push_back(static_cast<double>(i));
   }
   return state;
 }
 
-std::vector<double> by_id(const SolverState& state, std::vector<double> Particles::*field) {
+std::vector<double> by_id(const SolverState& state, const FieldMember<Particles, Values>& field) {
   const Particles& p = state.particles;
   std::vector<double> values(p.size(), std::nan(""));
   for (std::size_t i = 0; i < p.size(); ++i) {
-    values.at(static_cast<std::size_t>(p.id[i])) = (p.*field)[i];
+    values.at(static_cast<std::size_t>(p.id[i])) = field.of(p)[i];
   }
   return values;
 }
 
 Fluid fluid_of(const SolverState& state) {
-  const auto x = by_id(state, &Particles::x);
-  const auto y = by_id(state, &Particles::y);
-  const auto vx = by_id(state, &Particles::vx);
-  const auto vy = by_id(state, &Particles::vy);
+  const auto x = by_id(state, {&Particles::position, 0});
+  const auto y = by_id(state, {&Particles::position, 1});
+  const auto vx = by_id(state, {&Particles::velocity, 0});
+  const auto vy = by_id(state, {&Particles::velocity, 1});
   Fluid fluid;
   for (std::size_t i = 0; i < x.size(); ++i) fluid.add({x[i], y[i]}, {vx[i], vy[i]});
   fluid.excess = by_id(state, &Particles::density_excess);
@@ -91,8 +89,8 @@ Fluid fluid_of(const SolverState& state) {
 }
 
 Fluid middle_of_step(Fluid fluid, const SolverState& start, double dt) {
-  const auto ax = by_id(start, &Particles::ax);
-  const auto ay = by_id(start, &Particles::ay);
+  const auto ax = by_id(start, {&Particles::acceleration, 0});
+  const auto ay = by_id(start, {&Particles::acceleration, 1});
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     fluid.v[i] += 0.5 * dt * Vec(ax[i], ay[i]);
     fluid.x[i] += 0.5 * dt * fluid.v[i];
@@ -102,8 +100,8 @@ Fluid middle_of_step(Fluid fluid, const SolverState& start, double dt) {
 
 void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what) {
   for (const Field& field : kFields) {
-    const auto& one = a.particles.*field.member;
-    const auto& other = b.particles.*field.member;
+    const auto& one = field.values.of(a.particles);
+    const auto& other = field.values.of(b.particles);
     ASSERT_EQ(one.size(), other.size()) << what << ", field " << field.name;
     if (one.empty()) continue;
     EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0)
@@ -116,11 +114,11 @@ void expect_same_bits(const SolverState& a, const SolverState& b, const std::str
   for (std::size_t k = 0; k < a.removed.size(); ++k) {
     const RemovedParticle& one = a.removed[k];
     const RemovedParticle& other = b.removed[k];
-    EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.x, one.y, one.vx, one.vy,
+    EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.position, one.velocity,
                        one.density_excess),
-              std::tie(other.id, other.cause, other.step, other.time, other.x, other.y, other.vx,
-                       other.vy, other.density_excess))
-        << what << ", retired " << k;
+              std::tie(other.id, other.cause, other.step, other.time, other.position,
+                       other.velocity, other.density_excess))
+        << what << ", removed " << k;
   }
 }
 
@@ -164,8 +162,8 @@ FluidRates rates_of_next_step(Solver& solver) {
   solver.step();
   const SolverState state = solver.state();
   const Fluid full = fluid_of(state);
-  const auto vx_half = by_id(state, &Particles::vx_half);
-  const auto vy_half = by_id(state, &Particles::vy_half);
+  const auto vx_half = by_id(state, {&Particles::velocity_half, 0});
+  const auto vy_half = by_id(state, {&Particles::velocity_half, 1});
   const auto half = by_id(state, &Particles::density_excess_half);
   const double half_step = 0.5 * solver.time_step();
   FluidRates rates;

@@ -70,7 +70,7 @@ class Dice {
 
 /// A field of a state in the order of ids.
 [[nodiscard]] std::vector<double> by_id(const SolverState& state,
-                                        std::vector<double> Particles::*field);
+                                        const FieldMember<Particles, Values>& field);
 
 /// Where kick-drift-kick sums eq. 4 in a step of length dt from `fluid`: half a kick by the
 /// accelerations of `start`, the state of a solver that holds it, and half a drift later.

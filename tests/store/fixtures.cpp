@@ -19,9 +19,10 @@ using Limits = std::numeric_limits<double>;
 
 bool same(const RemovedParticle& a, const RemovedParticle& b) {
   return same_bits(a.id, b.id) && a.cause == b.cause && a.step == b.step &&
-         same_bits(a.time, b.time) && same_bits(a.x, b.x) && same_bits(a.y, b.y) &&
-         same_bits(a.vx, b.vx) && same_bits(a.vy, b.vy) &&
-         same_bits(a.density_excess, b.density_excess);
+         same_bits(a.time, b.time) &&
+         std::all_of(kRemovedFields.begin(), kRemovedFields.end(), [&](const RemovedField& field) {
+           return same_bits(field.value.of(a), field.value.of(b));
+         });
 }
 
 template <class List, class Same>
@@ -91,14 +92,14 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
   checkpoint.solver.time_step = 1e-4;
   for (std::size_t i = 0; i < kFields.size(); ++i) {
     if (carries(integrator, kFields[i])) {
-      checkpoint.solver.particles.*kFields[i].member =
+      kFields[i].values.of(checkpoint.solver.particles) =
           awkward_values(count, 100.0 * static_cast<double>(i));
     }
   }
   checkpoint.solver.removed = {
-      {3.0, RemovalCause::overtopped, 11, 0.011, 1.5, 0.61, 0.5, -1.5, 2.5},
-      {5.0, RemovalCause::leaked, 12, 0.012, -0.1, -0.0, -0.0, 3.5, -4.5},
-      {6.0, RemovalCause::too_thin, 13, 0.013, 0.1, 0.2, 5.5, 6.5, -301.0}};
+      {3.0, RemovalCause::overtopped, 11, 0.011, {1.5, 0.61}, {0.5, -1.5}, 2.5},
+      {5.0, RemovalCause::leaked, 12, 0.012, {-0.1, -0.0}, {-0.0, 3.5}, -4.5},
+      {6.0, RemovalCause::too_thin, 13, 0.013, {0.1, 0.2}, {5.5, 6.5}, -301.0}};
   checkpoint.samples = make_samples();
   checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0, -60.0, 70.0, 80.0, 90.0};
   checkpoint.next_snapshot = 4;
@@ -106,13 +107,13 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
 }
 
 Snapshot make_test_snapshot(std::size_t count) {
-  Snapshot frame{17, 0.25, {}, {}, {}, {}, {}, {}};
+  Snapshot frame;
+  frame.step = 17;
+  frame.time = 0.25;
   for (std::size_t i = 0; i < count; ++i) {
     const auto value = static_cast<float>(i) / 3.0F;
-    frame.x.push_back(value);
-    frame.y.push_back(-value);
-    frame.vx.push_back(value * 1e-42F);  // denormal in single precision
-    frame.vy.push_back(-0.0F);
+    append(frame.position, std::array{value, -value});
+    append(frame.velocity, std::array{value * 1e-42F, -0.0F});  // denormal in single precision
     frame.pressure.push_back(value * 1e30F);
     frame.id.push_back(count - i);
   }
@@ -163,7 +164,7 @@ bool same_bits(const Checkpoint& a, const Checkpoint& b) {
     return same_bits(x, y);
   };
   const bool fields = std::all_of(kFields.begin(), kFields.end(), [&](const Field& field) {
-    return same_bits(a.solver.particles.*field.member, b.solver.particles.*field.member);
+    return same_bits(field.values.of(a.solver.particles), field.values.of(b.solver.particles));
   });
   return fields && a.scene_hash == b.scene_hash && a.build == b.build &&
          a.simd_target == b.simd_target && a.bit_exact == b.bit_exact &&

@@ -93,6 +93,12 @@ class CheckTree(unittest.TestCase):
         self.assert_one(self.found_in({**GOOD, **files, "engine/run/loop.cpp": line}),
                         "engine/run may not include from engine/execute")
 
+    def test_an_axis_that_is_named_outside_of_the_border_is_found(self):
+        for named in ("place.y()", "frame.vx", "particles.position[0]", "frame.origin_x"):
+            line = f"double value = {named};  // the y() of a comment is none\n"
+            self.assert_one(self.with_file("engine/store/files/x.cpp", line), "names an axis of space")
+            self.assertEqual(self.with_file("engine/sph/method/x.cpp", line), [])
+
     def test_hdf5_outside_its_room_is_found(self):
         for name in ("engine/store/disk/other.cpp", "tests/store/raw.cpp"):
             found = self.found_in({**GOOD, name: "#include <hdf5.h>\n", "tests/README.md": ""})

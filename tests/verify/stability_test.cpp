@@ -165,10 +165,10 @@ TEST(StabilityReport, ThePictureIsInUnitsOfTheFluidWithSpeedsOfTheFastest) {
   run.last.emplace();
   Particles& p = run.last->solver.particles;
   p.id = {0, 1};
-  p.x = {1.0, 3.0};
-  p.y = {5.0, 6.0};
-  p.vx = {0.0, 3.0};
-  p.vy = {2.0, 4.0};
+  p.position[0] = {1.0, 3.0};
+  p.position[1] = {5.0, 6.0};
+  p.velocity[0] = {0.0, 3.0};
+  p.velocity[1] = {2.0, 4.0};
   const std::vector<Dot> dots = result_of(run, Verdict::stable).picture;
   ASSERT_EQ(dots.size(), 2U);
   EXPECT_DOUBLE_EQ(dots[0].x, 0.0);

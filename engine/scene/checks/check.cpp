@@ -14,6 +14,7 @@
 #include "engine/scene/forecast/stability.hpp"
 #include "engine/scene/forecast/workload.hpp"
 #include "engine/scene/format/describe.hpp"
+#include "engine/space/axes.hpp"
 
 namespace sluice {
 namespace {
@@ -87,16 +88,17 @@ void check_sensor(const Sensor& sensor, const std::string& pointer, const Method
   const bool line =
       sensor.kind == SensorKind::surface_height || sensor.kind == SensorKind::column_height;
   const Box& domain = method.domain;
-  const double x = sensor.position.x();
   if (point && !domain.contains(sensor.position)) {
     problems.add(at(pointer, "position"),
-                 fmt::format("is ({:.6g}, {:.6g}) m; must lie in /domain, {}", x,
-                             sensor.position.y(), show(domain)));
+                 fmt::format("is ({:.6g}) m; must lie in /domain, {}",
+                             fmt::join(sensor.position, ", "), show(domain)));
   }
-  if (line && (x < domain.min.x() || x > domain.max.x())) {
-    problems.add(at(pointer, "x"), fmt::format("is {:.6g} m; must lie in /domain, {:.6g} to {:.6g} "
-                                               "m",
-                                               x, domain.min.x(), domain.max.x()));
+  for (const int axis : kFloorAxes) {
+    const double along = sensor.position[axis];
+    if (!line || (along >= domain.min[axis] && along <= domain.max[axis])) continue;
+    problems.add(at(pointer, axis_name(axis)),
+                 fmt::format("is {:.6g} m; must lie in /domain, {:.6g} to {:.6g} m", along,
+                             domain.min[axis], domain.max[axis]));
   }
   const double ratio = sensor.smoothing_length / method.smoothing_length;
   if (sensor.kind == SensorKind::pressure && !(ratio >= 0.5 && ratio <= 10)) {

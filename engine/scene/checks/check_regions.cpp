@@ -59,9 +59,9 @@ void warn_of_gaps(const Scene& scene, Problems& warnings) {
       warnings.add(
           at("/fluid", i),
           fmt::format("leaves a gap of {:.3g} m, {:.2g} spacings, to /fluid/{} at "
-                      "({:.4g}, {:.4g}) m, which closes with a blow at the start; let "
+                      "({:.4g}) m, which closes with a blow at the start; let "
                       "them touch or leave a spacing, {:.3g} m",
-                      slit->width, slit->width / dx, other, slit->place.x(), slit->place.y(), dx));
+                      slit->width, slit->width / dx, other, fmt::join(slit->place, ", "), dx));
     }
   }
 }

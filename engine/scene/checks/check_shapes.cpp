@@ -64,8 +64,7 @@ void check_domain_holds(const Scene& scene, const WrittenScene& written, Problem
 }  // namespace
 
 std::string show(const Box& box) {
-  return fmt::format("({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) m", box.min.x(), box.min.y(),
-                     box.max.x(), box.max.y());
+  return fmt::format("({:.6g}) to ({:.6g}) m", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
 }
 
 void check_polygons(const Scene& scene, Problems& problems) {
@@ -85,9 +84,9 @@ void check_sizes(const Scene& scene, Problems& problems) {
   const auto check_size = [&](std::string pointer, const Vec& size) {
     if (size.minCoeff() >= dx * (1 - kSlack)) return;
     problems.add(std::move(pointer),
-                 fmt::format("is {:.6g} m x {:.6g} m; must be at least one /resolution/spacing, "
+                 fmt::format("is {:.6g} m; must be at least one /resolution/spacing, "
                              "{:.6g} m, either way",
-                             size.x(), size.y(), dx));
+                             fmt::join(size, " m x "), dx));
   };
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
     check_size(pointer, bounds(shape).size());

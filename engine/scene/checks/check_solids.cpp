@@ -9,6 +9,7 @@
 #include "engine/scene/geometry/narrow_part.hpp"
 #include "engine/scene/geometry/solids.hpp"
 #include "engine/scene/geometry/thin_solids.hpp"
+#include "engine/space/axes.hpp"
 
 namespace sluice {
 namespace {
@@ -24,8 +25,8 @@ constexpr int kLinePoints = 256;
 
 /// A length in m and in spacings, with its place.
 std::string size_text(const Narrow& narrow, double spacing) {
-  return fmt::format("{:.3g} m, {:.2g} spacings, at ({:.4g}, {:.4g}) m", narrow.width,
-                     narrow.width / spacing, narrow.place.x(), narrow.place.y());
+  return fmt::format("{:.3g} m, {:.2g} spacings, at ({:.4g}) m", narrow.width,
+                     narrow.width / spacing, fmt::join(narrow.place, ", "));
 }
 
 /// A spacing of which `count` fit into a width, with the digits that keep it below.
@@ -99,35 +100,49 @@ void check_point(const Sensor& sensor, const Scene& scene, const Solids& solids,
   // One at a seam looks as deep as it is, but not endlessly far.
   if (solids.depth(sensor.position, 1.01 * half) <= half) return;
   const double depth = solids.depth(sensor.position, kDeepest * scene.method.spacing);
-  warnings.add(
-      at(pointer, "position"),
-      fmt::format(
-          "is ({:.6g}, {:.6g}) m, {:.3g} m deep in {}, where no fluid can be; put it on "
-          "the face that the fluid touches, or in the fluid",
-          sensor.position.x(), sensor.position.y(), depth,
-          solids.depth_in_walls(sensor.position) > 0.0 ? "a wall of the tank" : "an obstacle"));
+  warnings.add(at(pointer, "position"),
+               fmt::format("is ({:.6g}) m, {:.3g} m deep in {}, where no fluid can be; put it on "
+                           "the face that the fluid touches, or in the fluid",
+                           fmt::join(sensor.position, ", "), depth,
+                           solids.depth_in_walls(sensor.position) > 0.0 ? "a wall of the tank"
+                                                                        : "an obstacle"));
+}
+
+/// Whether some point over a place on the floor is in no solid. On a face, the open is on one side.
+bool is_open_somewhere_over(Vec place, const Box& interior, const Solids& solids, double half) {
+  for (int k = 0; k < kLinePoints; ++k) {
+    place[kUpAxis] = (k + 0.5) / kLinePoints * interior.max[kUpAxis];
+    for (const int axis : kFloorAxes) {
+      for (const double aside : {-half, half}) {
+        Vec beside = place;
+        beside[axis] += aside;
+        if (!solids.holds(beside)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 void check_line(const Sensor& sensor, const Scene& scene, const Solids& solids,
                 const std::string& pointer, Problems& warnings) {
-  const double x = sensor.position.x();
-  const double half = kOnFace * scene.method.spacing;
   if (!scene.tank) return;
-  if (x < -half || x > scene.tank->width + half) {
-    warnings.add(at(pointer, "x"),
+  const double half = kOnFace * scene.method.spacing;
+  const Box interior = scene.tank->interior();
+  for (const int axis : kFloorAxes) {
+    const double along = sensor.position[axis];
+    const double length = interior.max[axis];
+    if (along >= -half && along <= length + half) continue;
+    warnings.add(at(pointer, axis_name(axis)),
                  fmt::format("is {:.6g} m, outside the tank, where no fluid can be; must be from 0 "
                              "to {:.6g} m to measure anything",
-                             x, scene.tank->width));
+                             along, length));
     return;
   }
-  for (int k = 0; k < kLinePoints; ++k) {
-    const double y = (k + 0.5) / kLinePoints * scene.tank->height;
-    // On a face, the open is on one side.
-    if (!solids.holds({x - half, y}) || !solids.holds({x + half, y})) return;
-  }
-  warnings.add(at(pointer, "x"), fmt::format("is {:.6g} m, where obstacles fill the tank from the "
-                                             "floor to the rim: no surface is there; move it",
-                                             x));
+  if (is_open_somewhere_over(sensor.position, interior, solids, half)) return;
+  warnings.add(at(pointer, axis_name(kFloorAxes.front())),
+               fmt::format("is {:.6g} m, where obstacles fill the tank from the floor to the rim: "
+                           "no surface is there; move it",
+                           sensor.position[kFloorAxes.front()]));
 }
 
 }  // namespace

@@ -64,8 +64,10 @@ double noise(std::uint64_t seed, std::uint64_t counter) {
 void displace(const Perturbation& perturbation, double spacing, Particles& particles) {
   const auto seed = static_cast<std::uint64_t>(perturbation.seed);
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    particles.x[i] += perturbation.amplitude * spacing * noise(seed, 2 * i);
-    particles.y[i] += perturbation.amplitude * spacing * noise(seed, 2 * i + 1);
+    for (std::size_t axis = 0; axis < particles.position.size(); ++axis) {
+      particles.position[axis][i] +=
+          perturbation.amplitude * spacing * noise(seed, kDim * i + axis);
+    }
   }
 }
 
@@ -134,12 +136,9 @@ Particles particles_at(const Scene& scene, const Places& places) {
   Particles particles;
   for (std::size_t i = 0; i < places.size(); ++i) {
     for (const Vec& point : places[i]) {
-      const Vec velocity = velocity_at(scene.fluid[i], point);
       particles.id.push_back(static_cast<double>(particles.size()));
-      particles.x.push_back(point.x());
-      particles.y.push_back(point.y());
-      particles.vx.push_back(velocity.x());
-      particles.vy.push_back(velocity.y());
+      append(particles.position, point);
+      append(particles.velocity, velocity_at(scene.fluid[i], point));
       particles.density_excess.push_back(levels.pressure(i, point) / c2);
     }
   }

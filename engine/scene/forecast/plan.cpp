@@ -166,7 +166,7 @@ void plan_fields(const Scene& scene, const Lists& fields) {
 }
 
 void plan_files(const Scene& scene, const Lists& files) {
-  files.always("checkpoints", "all that is needed to go on");
+  files.always("checkpoints", "all that is needed to resume");
   files.either(!scene.sensors.empty(), "series", "samples of the sensors", "sensors");
   files.either(scene.frames.has_value(), "frames", "snapshots of all particles", "output.frames");
   files.either(scene.scales.has_value(), "dimensionless results", "eqs. 19-22, when read",

@@ -104,7 +104,7 @@ void SchemaWriter::text(std::string_view key, std::string& member, const TextSpe
 
 void SchemaWriter::vector(std::string_view key, Vec& member, const NumberSpec& spec) {
   json property = describe_vector(spec);
-  if (spec.need == Need::optional) property["default"] = json::array({member.x(), member.y()});
+  if (spec.need == Need::optional) property["default"] = json(member);
   put(key, std::move(property), spec.need);
 }
 

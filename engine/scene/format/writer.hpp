@@ -24,13 +24,13 @@ class Writer {
   void integer(std::string_view key, int& member, const NumberSpec&) { put(key, member); }
   void flag(std::string_view key, bool& member, const KeySpec&) { put(key, member); }
   void text(std::string_view key, std::string& member, const TextSpec&) { put(key, member); }
-  void vector(std::string_view key, Vec& member, const NumberSpec&) { put(key, array(member)); }
+  void vector(std::string_view key, Vec& member, const NumberSpec&) { put(key, json(member)); }
   void vector(std::string_view key, std::optional<Vec>& member, const NumberSpec&) {
-    if (member) put(key, array(*member));
+    if (member) put(key, json(*member));
   }
   void points(std::string_view key, std::vector<Vec>& member, const ListSpec&, const NumberSpec&) {
     json all = json::array();
-    for (const Vec& each : member) all.push_back(array(each));
+    for (const Vec& each : member) all.push_back(json(each));
     put(key, std::move(all));
   }
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
@@ -92,7 +92,6 @@ class Writer {
  private:
   using json = nlohmann::json;
 
-  static json array(const Vec& vec) { return json::array({vec.x(), vec.y()}); }
   void put(std::string_view key, json value) { object_[std::string(key)] = std::move(value); }
 
   json object_ = json::object();

@@ -8,6 +8,7 @@
 
 #include "engine/scene/filling/walls.hpp"
 #include "engine/scene/geometry/geometry.hpp"
+#include "engine/space/axes.hpp"
 
 namespace sluice {
 namespace {
@@ -56,8 +57,9 @@ Box domain_of_tank(const Scene& scene) {
   const double walls =
       static_cast<double>(wall_layers(method)) * method.spacing + method.smoothing_length;
   const Tank& tank = *scene.tank;
-  const double above =
-      tank.open_top ? 2 * std::max(fluid_height(scene), fluid_bounds(scene).size().y()) : walls;
+  const double above = tank.open_top
+                           ? 2 * std::max(fluid_height(scene), fluid_bounds(scene).size()[kUpAxis])
+                           : walls;
   return {Vec::Constant(-walls), Vec(tank.width + walls, tank.height + std::max(above, walls))};
 }
 

@@ -37,6 +37,8 @@ struct Tank {
   double width = 0.0;
   double height = 0.0;
   bool open_top = true;
+
+  [[nodiscard]] Box interior() const { return {Vec::Zero(), Vec(width, height)}; }
 };
 
 /// A wall across the tank, on its floor, that holds the fluid on its left back and is lifted from

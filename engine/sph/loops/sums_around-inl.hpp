@@ -81,8 +81,8 @@ PointSums sum_around(const Particles& p, const Surroundings& around) {
   StateVec volumes = hn::Zero(d);
   const auto add = [&](std::size_t s) HWY_ATTR {
     const auto used = hn::LoadU(d, p.id.data() + s) >= hn::Zero(d);
-    const StateVec dx = (hn::LoadU(d, p.x.data() + s) - x) * inverse_h;
-    const StateVec dy = (hn::LoadU(d, p.y.data() + s) - y) * inverse_h;
+    const StateVec dx = (hn::LoadU(d, p.position[0].data() + s) - x) * inverse_h;
+    const StateVec dy = (hn::LoadU(d, p.position[1].data() + s) - y) * inverse_h;
     const StateVec w = hn::IfThenElseZero(used, Shape::value(d, dx * dx + dy * dy));
     const StateVec e = hn::IfThenElseZero(used, hn::LoadU(d, p.density_excess.data() + s));
     kernel = kernel + w;

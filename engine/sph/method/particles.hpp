@@ -7,26 +7,31 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/space/axes.hpp"
+#include "engine/space/field_member.hpp"
 #include "engine/space/vec.hpp"
 #include "engine/sph/method/method.hpp"
 
 namespace sluice {
 
+/// The values of one field, one for each particle.
+using Values = std::vector<double>;
+
 /// Fluid particles, structure of arrays. The order of the particles is part of the state: sums run
 /// in it. A field that the scheme does not need stays empty; all others have `size()` entries.
 struct Particles {
-  std::vector<double> x, y;                 ///< position, m
-  std::vector<double> vx, vy;               ///< velocity, m/s
-  std::vector<double> density_excess;       ///< rho - rho_0, kg/m^3
-  std::vector<double> vx_half, vy_half;     ///< velocity half a step earlier, m/s
-  std::vector<double> density_excess_half;  ///< rho - rho_0 half a step earlier, kg/m^3
-  std::vector<double> ax, ay;               ///< acceleration, m/s^2
-  std::vector<double> x_sorted, y_sorted;   ///< position at the last sort, m
-  std::vector<double> id;                   ///< number given at the start; whole, 0 ... N-1
+  PerAxis<Values> position;         ///< m
+  PerAxis<Values> velocity;         ///< m/s
+  Values density_excess;            ///< rho - rho_0, kg/m^3
+  PerAxis<Values> velocity_half;    ///< velocity half a step earlier, m/s
+  Values density_excess_half;       ///< rho - rho_0 half a step earlier, kg/m^3
+  PerAxis<Values> acceleration;     ///< m/s^2
+  PerAxis<Values> position_sorted;  ///< position at the last sort, m
+  Values id;                        ///< number given at the start; whole, 0 ... N-1
 
-  [[nodiscard]] std::size_t size() const { return x.size(); }
-  [[nodiscard]] Vec position(std::size_t i) const { return {x[i], y[i]}; }
-  [[nodiscard]] Vec velocity(std::size_t i) const { return {vx[i], vy[i]}; }
+  [[nodiscard]] std::size_t size() const { return position.front().size(); }
+  [[nodiscard]] Vec position_of(std::size_t i) const { return vector_of(position, i); }
+  [[nodiscard]] Vec velocity_of(std::size_t i) const { return vector_of(velocity, i); }
 };
 
 enum class Role {
@@ -37,31 +42,41 @@ enum class Role {
 /// Which schemes carry a field.
 enum class CarriedBy { every_scheme, modified_leap_frog, kick_drift_kick };
 
+/// What a field holds in a slot of memory that no particle is in.
+enum class EmptySlot {
+  zero,
+  nobody,   ///< kNobody
+  nowhere,  ///< a place far from all particles, and from that of every other empty slot
+};
+/// The id in an empty slot.
+inline constexpr double kNobody = -1.0;
+
 struct Field {
   std::string_view name;
   std::string_view unit;
   std::string_view description;
   Role role;
   CarriedBy carried_by;
-  std::vector<double> Particles::*member;
+  EmptySlot empty;
+  FieldMember<Particles, Values> values;
 };
 
-/// The one list of fields: memory, reordering, checkpoint, frames and comparison all go by it.
+/// The one list of fields: memory, reordering, checkpoint and comparison all go by it.
 // clang-format off
 inline constexpr std::array kFields{
-    Field{"x", "m", "position, horizontal", Role::state, CarriedBy::every_scheme, &Particles::x},
-    Field{"y", "m", "position, vertical", Role::state, CarriedBy::every_scheme, &Particles::y},
-    Field{"vx", "m/s", "velocity, horizontal", Role::state, CarriedBy::every_scheme, &Particles::vx},
-    Field{"vy", "m/s", "velocity, vertical", Role::state, CarriedBy::every_scheme, &Particles::vy},
-    Field{"density_excess", "kg/m^3", "density less the reference density", Role::state, CarriedBy::every_scheme, &Particles::density_excess},
-    Field{"vx_half", "m/s", "velocity half a step earlier, horizontal", Role::state, CarriedBy::modified_leap_frog, &Particles::vx_half},
-    Field{"vy_half", "m/s", "velocity half a step earlier, vertical", Role::state, CarriedBy::modified_leap_frog, &Particles::vy_half},
-    Field{"density_excess_half", "kg/m^3", "density less the reference density, half a step earlier", Role::state, CarriedBy::modified_leap_frog, &Particles::density_excess_half},
-    Field{"ax", "m/s^2", "acceleration, horizontal", Role::state, CarriedBy::kick_drift_kick, &Particles::ax},
-    Field{"ay", "m/s^2", "acceleration, vertical", Role::state, CarriedBy::kick_drift_kick, &Particles::ay},
-    Field{"x_sorted", "m", "position at the last sort, horizontal", Role::state, CarriedBy::every_scheme, &Particles::x_sorted},
-    Field{"y_sorted", "m", "position at the last sort, vertical", Role::state, CarriedBy::every_scheme, &Particles::y_sorted},
-    Field{"id", "1", "number given at the start", Role::state, CarriedBy::every_scheme, &Particles::id},
+    Field{"x", "m", "position, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position, 0}},
+    Field{"y", "m", "position, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position, 1}},
+    Field{"vx", "m/s", "velocity, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::zero, {&Particles::velocity, 0}},
+    Field{"vy", "m/s", "velocity, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::zero, {&Particles::velocity, 1}},
+    Field{"density_excess", "kg/m^3", "density less the reference density", Role::state, CarriedBy::every_scheme, EmptySlot::zero, &Particles::density_excess},
+    Field{"vx_half", "m/s", "velocity half a step earlier, horizontal", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&Particles::velocity_half, 0}},
+    Field{"vy_half", "m/s", "velocity half a step earlier, vertical", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&Particles::velocity_half, 1}},
+    Field{"density_excess_half", "kg/m^3", "density less the reference density, half a step earlier", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, &Particles::density_excess_half},
+    Field{"ax", "m/s^2", "acceleration, horizontal", Role::state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&Particles::acceleration, 0}},
+    Field{"ay", "m/s^2", "acceleration, vertical", Role::state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&Particles::acceleration, 1}},
+    Field{"x_sorted", "m", "position at the last sort, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position_sorted, 0}},
+    Field{"y_sorted", "m", "position at the last sort, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position_sorted, 1}},
+    Field{"id", "1", "number given at the start", Role::state, CarriedBy::every_scheme, EmptySlot::nobody, &Particles::id},
 };
 // clang-format on
 
@@ -101,12 +116,28 @@ struct RemovedParticle {
   RemovalCause cause = RemovalCause::leaked;
   std::uint64_t step = 0;
   double time = 0.0;            ///< s
-  double x = 0.0;               ///< m
-  double y = 0.0;               ///< m
-  double vx = 0.0;              ///< m/s
-  double vy = 0.0;              ///< m/s
+  Vec position = Vec::Zero();   ///< m
+  Vec velocity = Vec::Zero();   ///< m/s
   double density_excess = 0.0;  ///< kg/m^3
 };
+
+struct RemovedField {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+  FieldMember<RemovedParticle, double, Vec> value;
+};
+
+/// What a removed particle was, beside who, when and why.
+// clang-format off
+inline constexpr std::array kRemovedFields{
+    RemovedField{"x", "m", "last position, horizontal", {&RemovedParticle::position, 0}},
+    RemovedField{"y", "m", "last position, vertical", {&RemovedParticle::position, 1}},
+    RemovedField{"vx", "m/s", "last velocity, horizontal", {&RemovedParticle::velocity, 0}},
+    RemovedField{"vy", "m/s", "last velocity, vertical", {&RemovedParticle::velocity, 1}},
+    RemovedField{"density_excess", "kg/m^3", "last density less the reference density", &RemovedParticle::density_excess},
+};
+// clang-format on
 
 /// Everything the solver needs to go on as if it had never stopped.
 struct SolverState {

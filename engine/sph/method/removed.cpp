@@ -43,8 +43,8 @@ std::string_view to_string(RemovalCause cause) {
 
 std::optional<RemovalCause> cause_to_remove(const Method& method, const Particles& p,
                                             std::size_t slot, double time) {
-  const Vec place = p.position(slot);
-  const auto unfit = cause_to_exclude(method, place, p.velocity(slot), p.density_excess[slot]);
+  const Vec place = p.position_of(slot);
+  const auto unfit = cause_to_exclude(method, place, p.velocity_of(slot), p.density_excess[slot]);
   if (unfit) return unfit;
   if (!method.keeps(place)) {
     return place.y() >= method.over_from() ? RemovalCause::overtopped : RemovalCause::leaked;
@@ -60,12 +60,12 @@ RemovedParticle record_of(const Particles& p, std::size_t slot, RemovalCause cau
   record.cause = cause;
   record.step = step;
   record.time = time;
-  record.x = finite_or(p.x[slot], finite_or(p.x_sorted[slot], 0.0));
-  record.y = finite_or(p.y[slot], finite_or(p.y_sorted[slot], 0.0));
-  if (p.velocity(slot).allFinite()) {
-    record.vx = p.vx[slot];
-    record.vy = p.vy[slot];
+  for (std::size_t axis = 0; axis < p.position.size(); ++axis) {
+    record.position[static_cast<Eigen::Index>(axis)] =
+        finite_or(p.position[axis][slot], finite_or(p.position_sorted[axis][slot], 0.0));
   }
+  const Vec velocity = p.velocity_of(slot);
+  if (velocity.allFinite()) record.velocity = velocity;
   record.density_excess = finite_or(p.density_excess[slot], 0.0);
   return record;
 }
@@ -74,8 +74,8 @@ Energy energy_of(const Method& method, const RemovedParticle& removed) {
   const double mass = method.particle_mass();
   const double compression = removed.density_excess / method.reference_density;
   Energy energy;
-  energy.kinetic = 0.5 * mass * (removed.vx * removed.vx + removed.vy * removed.vy);
-  energy.potential = -mass * method.gravity.dot(Vec(removed.x, removed.y));
+  energy.kinetic = 0.5 * mass * removed.velocity.squaredNorm();
+  energy.potential = -mass * method.gravity.dot(removed.position);
   // Below no density at all there is no such integral.
   if (compression > -1.0) {
     energy.internal = mass * method.sound_speed * method.sound_speed *
@@ -87,7 +87,7 @@ Energy energy_of(const Method& method, const RemovedParticle& removed) {
 void Departed::add(const Method& method, const RemovedParticle& removed) {
   ++count;
   mass += method.particle_mass();
-  momentum += method.particle_mass() * Vec(removed.vx, removed.vy);
+  momentum += method.particle_mass() * removed.velocity;
   energy.merge(energy_of(method, removed));
 }
 

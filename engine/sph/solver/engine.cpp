@@ -38,24 +38,22 @@ void Engine<T>::load(const SolverState& state) {
   particle_count = state.particles.size();
 
   Particles source = state.particles;
-  const bool fresh = source.x_sorted.empty();
+  const bool fresh = source.position_sorted.front().empty();
   if (fresh) {
-    source.x_sorted = source.x;
-    source.y_sorted = source.y;
+    source.position_sorted = source.position;
     if (method.integrator == Integrator::modified_leap_frog) {
-      source.vx_half = source.vx;
-      source.vy_half = source.vy;
+      source.velocity_half = source.velocity;
       source.density_excess_half = source.density_excess;
     } else {
-      source.ax.assign(particle_count, 0.0);
-      source.ay.assign(particle_count, 0.0);
+      for (Values& along : source.acceleration) along.assign(particle_count, 0.0);
     }
   }
   // Sorting what is in order keeps it, so this also restores the slots of a state that was taken.
   particles = std::move(source);
   // Before it spoils what others feel. A state that was taken holds nobody who is to be removed.
   if (fresh) remove();
-  reorder(sort_into_clusters(team_, grid_, particles.x_sorted, particles.y_sorted, particles.id));
+  reorder(sort_into_clusters(team_, grid_, particles.position_sorted[0],
+                             particles.position_sorted[1], particles.id));
   walls_.lift(method, time);
   bind();
   // Between sorts nobody counts: a state that is gone on with must not be judged otherwise.
@@ -75,16 +73,16 @@ ParticleSpan Engine<T>::span(std::size_t chunk) {
   };
   return {.begin = kCluster * layout.chunk_begin(chunk),
           .end = kCluster * layout.chunk_begin(chunk + 1),
-          .x = data(p.x),
-          .y = data(p.y),
-          .vx = data(p.vx),
-          .vy = data(p.vy),
+          .x = data(p.position[0]),
+          .y = data(p.position[1]),
+          .vx = data(p.velocity[0]),
+          .vy = data(p.velocity[1]),
           .density_excess = data(p.density_excess),
-          .vx_half = data(p.vx_half),
-          .vy_half = data(p.vy_half),
+          .vx_half = data(p.velocity_half[0]),
+          .vy_half = data(p.velocity_half[1]),
           .density_excess_half = data(p.density_excess_half),
-          .ax = data(p.ax),
-          .ay = data(p.ay),
+          .ax = data(p.acceleration[0]),
+          .ay = data(p.acceleration[1]),
           .id = data(p.id)};
 }
 
@@ -158,7 +156,8 @@ template <typename T>
 std::size_t Engine<T>::memory_bytes() const {
   std::size_t bytes = pairs_.bytes() + walls_.bytes() + paths_.bytes() + sums_.bytes() +
                       fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
-  for (const Field& field : kFields) bytes += (particles.*field.member).capacity() * sizeof(double);
+  for (const Field& field : kFields)
+    bytes += field.values.of(particles).capacity() * sizeof(double);
   return bytes + bounds.bytes();
 }
 

@@ -20,8 +20,6 @@ constexpr double kOrderLifetime = 30.0;  // h/c at the largest step
 // be thick.
 constexpr double kSolidInterval = 4.0;  // h/c at the largest step
 
-constexpr double kNobody = -1.0;  // id of an empty slot
-
 /// Whether it is the step for what is done every so many h/c at the largest step.
 bool is_step_for(std::uint64_t step, double interval, double courant) {
   const double steps = std::max(1.0, std::round(interval / courant));
@@ -75,9 +73,9 @@ template <typename T>
 void Engine<T>::sort() {
   const PassClock clock(seconds_of(Pass::sort));
   const bool fewer = leaving_ && remove();
-  reorder(sort_into_clusters(team_, grid_, particles.x, particles.y, particles.id));
-  particles.x_sorted = particles.x;
-  particles.y_sorted = particles.y;
+  reorder(
+      sort_into_clusters(team_, grid_, particles.position[0], particles.position[1], particles.id));
+  particles.position_sorted = particles.position;
   bind();
   count_neighbours();
   ++sort_count;
@@ -108,10 +106,9 @@ void Engine<T>::reorder(Order order) {
   std::vector<double> moved;  // each field goes where the one before was
   for (const Field& field : kFields) {
     if (!carries(method.integrator, field)) continue;
-    std::vector<double>& values = particles.*field.member;
-    double empty = 0.0;
-    if (field.name == "id") empty = kNobody;
-    const double scale = field.unit == "m" ? method.smoothing_length : 0.0;
+    std::vector<double>& values = field.values.of(particles);
+    const double empty = field.empty == EmptySlot::nobody ? kNobody : 0.0;
+    const double scale = field.empty == EmptySlot::nowhere ? method.smoothing_length : 0.0;
     resize_closely(moved, next.slots());
     team_.run(next.chunks(), [&](std::size_t chunk) {
       const std::size_t end = kCluster * next.chunk_begin(chunk + 1);
@@ -129,8 +126,8 @@ void Engine<T>::reorder(Order order) {
 template <typename T>
 void Engine<T>::bind() {
   const std::size_t slots = layout.slots();
-  bounds.assign_origin_cells(team_, grid_, layout, particles.x_sorted.data(),
-                             particles.y_sorted.data(), particles.id.data());
+  bounds.assign_origin_cells(team_, grid_, layout, particles.position_sorted[0].data(),
+                             particles.position_sorted[1].data(), particles.id.data());
   scales_ = scales();
   pairs_.resize(slots);
   if (keeps_diffused(method)) pairs_.diffused.resize(slots);

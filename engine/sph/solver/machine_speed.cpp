@@ -70,10 +70,8 @@ Solver small_tank(const Method& method, std::string_view simd) {
         continue;
       }
       p.id.push_back(static_cast<double>(p.size()));
-      p.x.push_back(place.x());
-      p.y.push_back(place.y());
-      p.vx.push_back(0.0);
-      p.vy.push_back(0.0);
+      append(p.position, place);
+      append(p.velocity, Vec(Vec::Zero()));
       p.density_excess.push_back(0.0);
     }
   }

@@ -73,7 +73,7 @@ Probe FluidProbe::surface_height(double x) const {
   std::vector<Vec> column;
   const Box whole{{x - support, method_.domain.min.y()}, {x + support, method_.domain.max.y()}};
   for_each_in(whole, [&](std::size_t s) {
-    if (std::abs(particles_.x[s] - x) < support) column.push_back(particles_.position(s));
+    if (std::abs(particles_.position[0][s] - x) < support) column.push_back(particles_.position_of(s));
   });
   // Highest first, so that the search ends at the surface; what lies deeper is never sorted.
   const auto lower = [](const Vec& a, const Vec& b) {
@@ -122,7 +122,7 @@ double FluidProbe::distance(const Vec& point) const {
   double nearest_sq = method_.support() * method_.support();
   bool found = false;
   for_each_in({point - support, point + support}, [&](std::size_t s) {
-    const double sq = (particles_.position(s) - point).squaredNorm();
+    const double sq = (particles_.position_of(s) - point).squaredNorm();
     if (sq > nearest_sq) return;
     nearest_sq = sq;
     found = true;

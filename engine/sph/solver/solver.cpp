@@ -51,8 +51,8 @@ SolverState Solver::state() const {
   out.removed = impl_->removed;
   for (const Field& field : kFields) {
     if (!carries(impl_->method.integrator, field)) continue;
-    const std::vector<double>& from = impl_->particles.*field.member;
-    std::vector<double>& to = out.particles.*field.member;
+    const std::vector<double>& from = field.values.of(impl_->particles);
+    std::vector<double>& to = field.values.of(out.particles);
     to.reserve(impl_->particle_count);
     for (std::size_t s = 0; s < from.size(); ++s) {
       if (impl_->particles.id[s] >= 0.0) to.push_back(from[s]);
@@ -71,7 +71,9 @@ Probe Solver::pressure_at(const Vec& point, double h) const {
   return impl_->probe().pressure(point, h);
 }
 
-Probe Solver::surface_height_at(double x) const { return impl_->probe().surface_height(x); }
+Probe Solver::surface_height_at(const Vec& place) const {
+  return impl_->probe().surface_height(place.x());
+}
 
 Probe Solver::surge_front() const {
   if (impl_->particle_count == 0) return {};

@@ -89,9 +89,9 @@ class Solver {
   [[nodiscard]] Energy energy() const;
   /// eq. 11 with smoothing length `h`, Pa.
   [[nodiscard]] Probe pressure_at(const Vec& point, double h) const;
-  /// Highest point at `x` where the fluid fills at least half of the kernel, m; weight 0 when there
-  /// is none.
-  [[nodiscard]] Probe surface_height_at(double x) const;
+  /// Highest point straight above or below `place` where the fluid fills at least half of the
+  /// kernel, m; weight 0 when there is none.
+  [[nodiscard]] Probe surface_height_at(const Vec& place) const;
   /// Largest x of any fluid particle plus half a spacing, m; weight 0 without particles.
   [[nodiscard]] Probe surge_front() const;
   /// Distance of the nearest fluid particle to `point`, m; infinity when there is none within the

@@ -50,7 +50,7 @@ std::string what_it_lacks(const JobPaths& paths) {
   }
   return fmt::format(
       "scene.json is missing, while {} is there: put the scene of this run back as "
-      "scene.json, and it goes on",
+      "scene.json, and it resumes",
       checkpoints.front().filename().string());
 }
 
@@ -67,7 +67,7 @@ void require_free_folder(const fs::path& folder) {
   if (JobFolder::holds_job(folder)) {
     throw StorageError(
         StorageFault::already_exists,
-        fmt::format("{}: holds a job already; go on with it by its folder, or choose "
+        fmt::format("{}: holds a job already; resume it by its folder, or choose "
                     "another one",
                     folder.string()));
   }
@@ -165,7 +165,7 @@ void JobFolder::require_held() const {
   throw StorageError(
       StorageFault::lost,
       fmt::format("{}: this folder or the lock file in it was removed or replaced while the job "
-                  "ran; nothing more is written there. A copy of the folder goes on from its "
+                  "ran; nothing more is written there. A copy of the folder resumes from its "
                   "newest checkpoint",
                   name_.string()));
 }

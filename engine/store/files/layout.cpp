@@ -73,50 +73,50 @@ void identity(Archive& archive, Subject& checkpoint) {
 template <class Archive, class Subject>
 void particle_fields(Archive& archive, Integrator integrator, Subject& particles) {
   archive.group("/particles");
-  archive.count("/particles", "count", particles.x);
+  archive.count("/particles", "count", particles.position.front());
   const Extents shape{particles.size()};
   for (const Field& field : kFields) {
     if (carries(integrator, field)) {
-      archive.data_set("/particles/" + std::string(field.name), particles.*field.member, shape,
+      archive.data_set("/particles/" + std::string(field.name), field.values.of(particles), shape,
                        {std::string(field.unit), std::string(field.description)});
     }
   }
 }
 
-/// One member of all removed particles as a data set.
+/// What `member` names of each removed particle as a data set.
 template <class Archive, class List, class Member>
-void removed_column(Archive& archive, const std::string& name, List& list,
-                    Member RemovedParticle::*member, const Label& label) {
-  std::vector<decltype(to_file(Member{}))> column;
+void removed_column(Archive& archive, const std::string& name, List& list, const Member& member,
+                    const Label& label) {
+  std::vector<decltype(to_file(member(list.front())))> column;
   column.reserve(list.size());
-  for (const RemovedParticle& removed : list) {
-    column.push_back(to_file(removed.*member));
-  }
+  for (auto& removed : list) column.push_back(to_file(member(removed)));
   archive.data_set("/retired/" + name, column, Extents{list.size()}, label);
   if constexpr (Archive::kReads) {
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      from_file(column[i], list[i].*member);
-    }
+    for (std::size_t i = 0; i < list.size(); ++i) from_file(column[i], member(list[i]));
   }
 }
+
+/// Whether a field was kept from the first version on.
+bool is_place(const RemovedField& field) { return field.unit == "m"; }
 
 template <class Archive, class Subject>
 void removed_particles(Archive& archive, Subject& list, RemovedLayout layout) {
   archive.group("/retired");
   archive.count("/retired", "count", list);
-  removed_column(archive, "id", list, &RemovedParticle::id, {"1", "number given at the start"});
-  removed_column(archive, "cause", list, &RemovedParticle::cause, {"1", kCauses});
-  removed_column(archive, "step", list, &RemovedParticle::step,
-                 {"1", "step at which it left the sums"});
-  removed_column(archive, "time", list, &RemovedParticle::time,
-                 {"s", "time at which it left the sums"});
-  removed_column(archive, "x", list, &RemovedParticle::x, {"m", "last position, horizontal"});
-  removed_column(archive, "y", list, &RemovedParticle::y, {"m", "last position, vertical"});
-  if (layout == RemovedLayout::places) return;
-  removed_column(archive, "vx", list, &RemovedParticle::vx, {"m/s", "last velocity, horizontal"});
-  removed_column(archive, "vy", list, &RemovedParticle::vy, {"m/s", "last velocity, vertical"});
-  removed_column(archive, "density_excess", list, &RemovedParticle::density_excess,
-                 {"kg/m^3", "last density less the reference density"});
+  const auto column = [&](const char* name, auto RemovedParticle::*member, const Label& label) {
+    removed_column(
+        archive, name, list, [&](auto& removed) -> auto& { return removed.*member; }, label);
+  };
+  column("id", &RemovedParticle::id, {"1", "number given at the start"});
+  column("cause", &RemovedParticle::cause, {"1", kCauses});
+  column("step", &RemovedParticle::step, {"1", "step at which it left the sums"});
+  column("time", &RemovedParticle::time, {"s", "time at which it left the sums"});
+  for (const RemovedField& field : kRemovedFields) {
+    if (layout == RemovedLayout::places && !is_place(field)) continue;
+    removed_column(archive, std::string(field.name),
+                   list, [&](auto& removed) -> auto& { return field.value.of(removed); },
+                   {std::string(field.unit), std::string(field.description)});
+  }
 }
 
 /// Names and units of the columns; the caller's list is as long as the file's afterwards.
@@ -235,31 +235,21 @@ void physics(Archive& archive, Subject& checkpoint, const CheckpointLayout& layo
   guard_baselines(archive, checkpoint.guards);
 }
 
-struct SnapshotField {
-  std::string_view name, unit, description;
-  std::vector<float> Snapshot::*member;
-};
-constexpr std::array kSnapshotFields{
-    SnapshotField{"x", "m", "position from the origin, horizontal", &Snapshot::x},
-    SnapshotField{"y", "m", "position from the origin, vertical", &Snapshot::y},
-    SnapshotField{"vx", "m/s", "velocity, horizontal", &Snapshot::vx},
-    SnapshotField{"vy", "m/s", "velocity, vertical", &Snapshot::vy},
-    SnapshotField{"pressure", "Pa", "pressure, eq. 3", &Snapshot::pressure},
-};
-
 template <class Archive, class Subject>
 void snapshot_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.attribute("/", "step", frame.step);
   archive.attribute("/", "time", frame.time);
   if (version > 1) {
-    archive.attribute("/", "origin_x", frame.origin_x);
-    archive.attribute("/", "origin_y", frame.origin_y);
+    for (std::size_t axis = 0; axis < frame.position.size(); ++axis) {
+      archive.attribute("/", "origin_" + std::string(kAxisNames[axis]),
+                        frame.origin[static_cast<Eigen::Index>(axis)]);
+    }
   }
   archive.group("/particles");
-  archive.count("/particles", "count", frame.x);
-  const Extents shape{frame.x.size()};
+  archive.count("/particles", "count", frame.position.front());
+  const Extents shape{frame.size()};
   for (const SnapshotField& field : kSnapshotFields) {
-    archive.data_set("/particles/" + std::string(field.name), frame.*field.member, shape,
+    archive.data_set("/particles/" + std::string(field.name), field.values.of(frame), shape,
                      {std::string(field.unit), std::string(field.description)});
   }
   archive.data_set("/particles/id", frame.id, shape, {"1", "number given at the start"});

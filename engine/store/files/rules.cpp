@@ -41,7 +41,7 @@ class Rules {
 
 void require_particles(const Rules& rules, Integrator integrator, const Particles& particles) {
   for (const Field& field : kFields) {
-    const std::vector<double>& values = particles.*field.member;
+    const std::vector<double>& values = field.values.of(particles);
     const std::string what = fmt::format("particle field '{}'", field.name);
     rules.require_count(what, values.size(), carries(integrator, field) ? particles.size() : 0);
     rules.require_finite(what, values);
@@ -53,11 +53,9 @@ void require_removed(const Rules& rules, const std::vector<RemovedParticle>& lis
     const std::string what = fmt::format("removed particle {}: ", i);
     rules.require_finite(what + "id", list[i].id);
     rules.require_finite(what + "time", list[i].time);
-    rules.require_finite(what + "x", list[i].x);
-    rules.require_finite(what + "y", list[i].y);
-    rules.require_finite(what + "vx", list[i].vx);
-    rules.require_finite(what + "vy", list[i].vy);
-    rules.require_finite(what + "density_excess", list[i].density_excess);
+    for (const RemovedField& field : kRemovedFields) {
+      rules.require_finite(what + std::string(field.name), field.value.of(list[i]));
+    }
   }
 }
 

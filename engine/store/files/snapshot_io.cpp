@@ -31,7 +31,8 @@ double origin_of(const std::vector<double>& positions) {
 }
 
 Bytes encode(const Snapshot& frame) {
-  WriteArchive archive(frame.x.size() * (5 * sizeof(float) + sizeof(std::uint64_t)));
+  WriteArchive archive(frame.size() *
+                       (kSnapshotFields.size() * sizeof(float) + sizeof(std::uint64_t)));
   walk_format(archive, kSnapshotFormat);
   walk_snapshot(archive, frame);
   return archive.image();
@@ -55,12 +56,12 @@ Snapshot make_snapshot(const SolverState& state, const Method& method) {
   Snapshot frame;
   frame.step = state.step;
   frame.time = state.time;
-  frame.origin_x = origin_of(particles.x);
-  frame.origin_y = origin_of(particles.y);
-  frame.x = single(particles.x, frame.origin_x);
-  frame.y = single(particles.y, frame.origin_y);
-  frame.vx = single(particles.vx);
-  frame.vy = single(particles.vy);
+  for (std::size_t axis = 0; axis < particles.position.size(); ++axis) {
+    double& origin = frame.origin[static_cast<Eigen::Index>(axis)];
+    origin = origin_of(particles.position[axis]);
+    frame.position[axis] = single(particles.position[axis], origin);
+    frame.velocity[axis] = single(particles.velocity[axis]);
+  }
   const double c_squared = method.sound_speed * method.sound_speed;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     frame.pressure.push_back(static_cast<float>(c_squared * particles.density_excess[i]));

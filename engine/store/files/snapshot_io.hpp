@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/space/axes.hpp"
+#include "engine/space/field_member.hpp"
 #include "engine/space/vec.hpp"
 #include "engine/sph/method/method.hpp"
 #include "engine/sph/method/particles.hpp"
@@ -19,19 +21,39 @@ namespace sluice {
 /// precision tells no particles apart far from zero.
 struct Snapshot {
   std::uint64_t step = 0;
-  double time = 0.0;              ///< s
-  std::vector<float> x, y;        ///< m, from the origin
-  std::vector<float> vx, vy;      ///< m/s
-  std::vector<float> pressure;    ///< Pa
-  std::vector<std::uint64_t> id;  ///< number given at the start
-  double origin_x = 0.0;          ///< m
-  double origin_y = 0.0;          ///< m
+  double time = 0.0;                     ///< s
+  PerAxis<std::vector<float>> position;  ///< m, from the origin
+  PerAxis<std::vector<float>> velocity;  ///< m/s
+  std::vector<float> pressure;           ///< Pa
+  std::vector<std::uint64_t> id;         ///< number given at the start
+  Vec origin = Vec::Zero();              ///< m
 
+  [[nodiscard]] std::size_t size() const { return position.front().size(); }
   /// Where particle i is, m.
-  [[nodiscard]] Vec position(std::size_t i) const {
-    return {origin_x + static_cast<double>(x[i]), origin_y + static_cast<double>(y[i])};
+  [[nodiscard]] Vec position_of(std::size_t i) const {
+    return origin + vector_of(position, i).cast<double>();
+  }
+  /// Velocity of particle i, m/s.
+  [[nodiscard]] Eigen::Matrix<float, kDim, 1> velocity_of(std::size_t i) const {
+    return vector_of(velocity, i);
   }
   friend bool operator==(const Snapshot&, const Snapshot&) = default;
+};
+
+struct SnapshotField {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+  FieldMember<Snapshot, std::vector<float>> values;
+};
+
+/// What a snapshot holds of each particle beside its id.
+inline constexpr std::array kSnapshotFields{
+    SnapshotField{"x", "m", "position from the origin, horizontal", {&Snapshot::position, 0}},
+    SnapshotField{"y", "m", "position from the origin, vertical", {&Snapshot::position, 1}},
+    SnapshotField{"vx", "m/s", "velocity, horizontal", {&Snapshot::velocity, 0}},
+    SnapshotField{"vy", "m/s", "velocity, vertical", {&Snapshot::velocity, 1}},
+    SnapshotField{"pressure", "Pa", "pressure, eq. 3", &Snapshot::pressure},
 };
 
 /// `frame-<index>.h5`, the index in 6 digits.

@@ -51,7 +51,8 @@ void require_sound(const std::string& text) {
   RC_ASSERT(e.fluid_particles + e.wall_particles <= static_cast<std::uint64_t>(kMaxParticles));
   if (e.fluid_particles + e.wall_particles > 20000) return;
   try {
-    for (const double x : create_particles(*result.scene).state.particles.x) {
+    const Particles particles = create_particles(*result.scene).state.particles;
+    for (const double x : particles.position[0]) {
       RC_ASSERT(std::isfinite(x));
     }
   } catch (const SceneError& error) {

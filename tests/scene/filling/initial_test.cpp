@@ -31,7 +31,7 @@ json region(const char* text) { return json::parse(text); }
 
 std::vector<Vec> positions(const Particles& particles) {
   std::vector<Vec> result;
-  for (std::size_t i = 0; i < particles.size(); ++i) result.push_back(particles.position(i));
+  for (std::size_t i = 0; i < particles.size(); ++i) result.push_back(particles.position_of(i));
   return result;
 }
 
@@ -52,12 +52,12 @@ TEST(InitialParticles, StandBehindAGateOfThreeLayersOfWallParticles) {
 TEST(InitialParticles, FillThePapersColumnWith200By100) {
   const Particles p = create_particles(example("dambreak-paper")).state.particles;
   ASSERT_EQ(p.size(), 20000U);
-  EXPECT_DOUBLE_EQ(p.x.front(), 0.0015);
-  EXPECT_DOUBLE_EQ(p.y.front(), 0.0015);
-  EXPECT_DOUBLE_EQ(p.x[199], 0.5985);
-  EXPECT_DOUBLE_EQ(p.y[200], 0.0045);
-  EXPECT_DOUBLE_EQ(p.x.back(), 0.5985);
-  EXPECT_DOUBLE_EQ(p.y.back(), 0.2985);
+  EXPECT_DOUBLE_EQ(p.position[0].front(), 0.0015);
+  EXPECT_DOUBLE_EQ(p.position[1].front(), 0.0015);
+  EXPECT_DOUBLE_EQ(p.position[0][199], 0.5985);
+  EXPECT_DOUBLE_EQ(p.position[1][200], 0.0045);
+  EXPECT_DOUBLE_EQ(p.position[0].back(), 0.5985);
+  EXPECT_DOUBLE_EQ(p.position[1].back(), 0.2985);
 }
 
 TEST(InitialParticles, FillTheCoarseColumnWithAbout7600) {
@@ -71,7 +71,7 @@ TEST(InitialParticles, FillNothingButWhatTheSolverIsPromised) {
   EXPECT_EQ(state.time, 0.0);
   EXPECT_TRUE(state.removed.empty());
   for (const Field& field : kFields) {
-    const std::vector<double>& values = state.particles.*field.member;
+    const std::vector<double>& values = field.values.of(state.particles);
     const bool filled = field.name == "x" || field.name == "y" || field.name == "vx" ||
                         field.name == "vy" || field.name == "density_excess" || field.name == "id";
     EXPECT_EQ(values.size(), filled ? 200U : 0U) << field.name;
@@ -91,9 +91,9 @@ TEST(InitialParticles, StartWithTheirRegionsVelocity) {
   text["fluid"].push_back(
       region(R"({"shape": "circle", "center": [1.5, 0.5], "radius": 0.2, "velocity": [-1, 2]})"));
   const Particles p = create_particles(parsed(text)).state.particles;
-  EXPECT_EQ(p.velocity(0), Vec(0, 0));
-  EXPECT_EQ(p.velocity(199), Vec(0, 0));
-  EXPECT_EQ(p.velocity(200), Vec(-1, 2));
+  EXPECT_EQ(p.velocity_of(0), Vec(0, 0));
+  EXPECT_EQ(p.velocity_of(199), Vec(0, 0));
+  EXPECT_EQ(p.velocity_of(200), Vec(-1, 2));
 }
 
 TEST(InitialParticles, AreStrainedAndTurnedAboutTheMiddleOfTheirRegion) {
@@ -106,13 +106,13 @@ TEST(InitialParticles, AreStrainedAndTurnedAboutTheMiddleOfTheirRegion) {
   const Particles p = create_particles(scene).state.particles;
   ASSERT_GT(p.size(), 200U);
   for (std::size_t i = 200; i < p.size(); ++i) {
-    const double x = p.x[i] - 1.5;
-    const double y = p.y[i] - 0.4;
-    EXPECT_NEAR(p.vx[i], -1 + 3 * x - 4 * y, 1e-12);
-    EXPECT_NEAR(p.vy[i], 2 - 3 * y + 4 * x, 1e-12);
-    EXPECT_LE(p.velocity(i).norm(), greatest_speed(scene.fluid[1]));
+    const double x = p.position[0][i] - 1.5;
+    const double y = p.position[1][i] - 0.4;
+    EXPECT_NEAR(p.velocity[0][i], -1 + 3 * x - 4 * y, 1e-12);
+    EXPECT_NEAR(p.velocity[1][i], 2 - 3 * y + 4 * x, 1e-12);
+    EXPECT_LE(p.velocity_of(i).norm(), greatest_speed(scene.fluid[1]));
   }
-  EXPECT_EQ(p.velocity(0), Vec(0, 0));
+  EXPECT_EQ(p.velocity_of(0), Vec(0, 0));
 }
 
 TEST(InitialParticles, StartWithTheDensityOfWaterAtRest) {
@@ -121,7 +121,7 @@ TEST(InitialParticles, StartWithTheDensityOfWaterAtRest) {
   const Particles p = create_particles(scene).state.particles;
   const double c2 = scene.method.sound_speed * scene.method.sound_speed;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_NEAR(p.density_excess[i], 1000 * 9.81 * (0.5 - p.y[i]) / c2, 1e-12);
+    EXPECT_NEAR(p.density_excess[i], 1000 * 9.81 * (0.5 - p.position[1][i]) / c2, 1e-12);
   }
 }
 
@@ -132,7 +132,8 @@ TEST(InitialParticles, FeelGravityAcrossAndUpwards) {
   const Particles p = create_particles(scene).state.particles;
   const double c2 = scene.method.sound_speed * scene.method.sound_speed;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_NEAR(p.density_excess[i], 1000 * (3 * p.x[i] + 4 * p.y[i]) / c2, 1e-12);
+    EXPECT_NEAR(p.density_excess[i], 1000 * (3 * p.position[0][i] + 4 * p.position[1][i]) / c2,
+                1e-12);
   }
 }
 
@@ -176,8 +177,8 @@ TEST(InitialParticles, LieOnTheLatticeOfTheOriginInACircle) {
   const json drop = region(R"({"shape": "circle", "center": [0.013, 0.017], "radius": 0.5})");
   const Particles p = create_particles(parsed(free_scene(drop))).state.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_LE((p.position(i) - Vec(0.013, 0.017)).norm(), 0.5);
-    const Vec cells = p.position(i) / 0.05 - Vec(0.5, 0.5);
+    EXPECT_LE((p.position_of(i) - Vec(0.013, 0.017)).norm(), 0.5);
+    const Vec cells = p.position_of(i) / 0.05 - Vec(0.5, 0.5);
     EXPECT_NEAR(cells.x(), std::round(cells.x()), 1e-9);
     EXPECT_NEAR(cells.y(), std::round(cells.y()), 1e-9);
   }
@@ -220,7 +221,7 @@ TEST(InitialParticles, GiveWayToRoundObstacles) {
   const Particles p = create_particles(parsed(text)).state.particles;
   EXPECT_EQ(p.size(), 187U) << "200 - pi 2^2 = 187.4";
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_GT((p.position(i) - Vec(0.5, 0.25)).norm(), 0.1);
+    EXPECT_GT((p.position_of(i) - Vec(0.5, 0.25)).norm(), 0.1);
   }
 }
 
@@ -243,7 +244,7 @@ TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
   const Particles lattice = create_particles(parsed(text)).state.particles;
   text["perturbation"] = {{"amplitude", 0.1}, {"seed", 1}};
   const Particles first = create_particles(parsed(text)).state.particles;
-  EXPECT_EQ(create_particles(parsed(text)).state.particles.x, first.x);
+  EXPECT_EQ(create_particles(parsed(text)).state.particles.position[0], first.position[0]);
   text["perturbation"]["seed"] = 2;
   const Particles second = create_particles(parsed(text)).state.particles;
 
@@ -251,9 +252,9 @@ TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
   double mean = 0.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < lattice.size(); ++i) {
-    const Vec moved = (first.position(i) - lattice.position(i)) / 0.05;
+    const Vec moved = (first.position_of(i) - lattice.position_of(i)) / 0.05;
     EXPECT_LE(moved.cwiseAbs().maxCoeff(), 0.1 + 1e-12);
-    EXPECT_NE(first.x[i], second.x[i]);
+    EXPECT_NE(first.position[0][i], second.position[0][i]);
     mean += moved.sum() / (2.0 * static_cast<double>(lattice.size()));
     largest = std::max(largest, moved.cwiseAbs().maxCoeff());
   }
@@ -274,7 +275,7 @@ double off_hydrostatic(const json& text, const Level& level) {
   const double c2 = scene.method.sound_speed * scene.method.sound_speed;
   double most = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const double right = 9810.0 * (level(p.x[i]) - p.y[i]);
+    const double right = 9810.0 * (level(p.position[0][i]) - p.position[1][i]);
     most = std::max(most, std::abs(c2 * p.density_excess[i] - right));
   }
   return most;
@@ -402,8 +403,8 @@ TEST(PackedParticles, DoNotSagAtAFreeSide) {
   const Particles p = create_particles(parsed(text)).state.particles;
   double front = 0.0, top = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    front = std::max(front, p.x[i]);
-    top = std::max(top, p.y[i]);
+    front = std::max(front, p.position[0][i]);
+    top = std::max(top, p.position[1][i]);
   }
   EXPECT_NEAR(front, 1.0 - 0.0125, 0.2 * 0.025);
   EXPECT_NEAR(top, 0.8 - 0.0125, 0.2 * 0.025);
@@ -420,8 +421,8 @@ RC_GTEST_PROP(InitialParticles, OfARectangleStayWithinHalfASpacingOfIt, ()) {
   const auto cells = [](double length) { return std::max(1.0, std::round(length / 0.05)); };
   RC_ASSERT(static_cast<double>(p.size()) == cells(width) * cells(height));
   for (std::size_t i = 0; i < p.size(); ++i) {
-    RC_ASSERT(p.x[i] > -1 && p.x[i] < -1 + width + 1e-9);
-    RC_ASSERT(p.y[i] > 2 && p.y[i] < 2 + height + 1e-9);
+    RC_ASSERT(p.position[0][i] > -1 && p.position[0][i] < -1 + width + 1e-9);
+    RC_ASSERT(p.position[1][i] > 2 && p.position[1][i] < 2 + height + 1e-9);
   }
 }
 

@@ -97,8 +97,8 @@ void expect_kick_drift_kick_sums(const Method& m, const Scene& scene, const std:
   Solver solver(m, start_from(scene.fluid), scene.walls, {1, target});
   expect_near(solver.wall_pressures(), pressure, eps * 2e4, what + ": wall pressure");
   const SolverState start = solver.state();
-  const auto ax = by_id(start, &Particles::ax);
-  const auto ay = by_id(start, &Particles::ay);
+  const auto ax = by_id(start, {&Particles::acceleration, 0});
+  const auto ay = by_id(start, {&Particles::acceleration, 1});
   std::vector<Vec> a;
   for (std::size_t i = 0; i < ax.size(); ++i) a.emplace_back(ax[i], ay[i]);
   expect_near(a, expected.acceleration, eps * expected.acceleration_size, what + ": acceleration");
@@ -251,8 +251,8 @@ void expect_kick_drift_kick_reinitialisation(const Method& m, const Scene& scene
   const auto walls_after = plain_wall_pressures(m, fluid, scene.walls);
   expect_near(solver.wall_pressures(), walls_after, eps * 4e4, "wall pressure");
   // The acceleration saw the velocities before the last half kick.
-  const auto ax = by_id(solver.state(), &Particles::ax);
-  const auto ay = by_id(solver.state(), &Particles::ay);
+  const auto ax = by_id(solver.state(), {&Particles::acceleration, 0});
+  const auto ay = by_id(solver.state(), {&Particles::acceleration, 1});
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     fluid.v[i] = after.v[i] - 0.5 * solver.time_step() * Vec(ax[i], ay[i]);
   }

@@ -35,12 +35,12 @@ struct Momentum {
 /// Per unit of mass. The leap-frog conserves x^n x v^(n-1/2): its drift is along that velocity.
 Momentum momentum_of(const SolverState& state) {
   const Particles& p = state.particles;
-  const bool half = !p.vx_half.empty();
+  const bool half = !p.velocity_half[0].empty();
   Momentum sum;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec v = half ? Vec(p.vx_half[i], p.vy_half[i]) : p.velocity(i);
+    const Vec v = half ? Vec(p.velocity_half[0][i], p.velocity_half[1][i]) : p.velocity_of(i);
     sum.linear += v;
-    sum.angular += p.x[i] * v.y() - p.y[i] * v.x();
+    sum.angular += p.position[0][i] * v.y() - p.position[1][i] * v.x();
   }
   return sum;
 }

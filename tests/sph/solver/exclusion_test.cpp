@@ -32,25 +32,25 @@ Fluid block() {
 /// The state without one particle.
 SolverState without(SolverState state, std::size_t index) {
   for (const Field& field : kFields) {
-    std::vector<double>& values = state.particles.*field.member;
+    std::vector<double>& values = field.values.of(state.particles);
     if (!values.empty()) values.erase(values.begin() + static_cast<std::ptrdiff_t>(index));
   }
   return state;
 }
 
 struct Fault {
-  std::vector<double> Particles::*field;
+  FieldMember<Particles, Values> field;
   double value;
   RemovalCause cause;
 };
 const Fault kFaults[] = {
     {&Particles::density_excess, 301.0, RemovalCause::too_dense},
     {&Particles::density_excess, -301.0, RemovalCause::too_thin},
-    {&Particles::vx, 20.1, RemovalCause::too_fast},
-    {&Particles::vy, -1e200, RemovalCause::too_fast},
-    {&Particles::x, kNan, RemovalCause::not_finite},
-    {&Particles::y, -kInfinity, RemovalCause::not_finite},
-    {&Particles::vx, kNan, RemovalCause::not_finite},
+    {{&Particles::velocity, 0}, 20.1, RemovalCause::too_fast},
+    {{&Particles::velocity, 1}, -1e200, RemovalCause::too_fast},
+    {{&Particles::position, 0}, kNan, RemovalCause::not_finite},
+    {{&Particles::position, 1}, -kInfinity, RemovalCause::not_finite},
+    {{&Particles::velocity, 0}, kNan, RemovalCause::not_finite},
     {&Particles::density_excess, kInfinity, RemovalCause::not_finite},
 };
 
@@ -63,7 +63,7 @@ TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
       run_steps(expected, 40);
       for (const Fault& fault : kFaults) {
         SolverState bad = good;
-        (bad.particles.*fault.field)[kBad] = fault.value;
+        fault.field.of(bad.particles)[kBad] = fault.value;
         Solver solver(m, bad, {}, {});
         ASSERT_EQ(solver.removed().size(), 1U);
         EXPECT_EQ(solver.removed()[0].id, static_cast<double>(kBad));
@@ -86,12 +86,11 @@ SolverState gone_wrong(const Method& m, std::size_t steps) {
   while (solver.step_count() < steps) solver.step();
   SolverState state = solver.state();
   Particles& p = state.particles;
-  for (std::vector<double> Particles::*field :
-       {&Particles::density_excess, &Particles::density_excess_half}) {
-    if (!(p.*field).empty()) (p.*field)[kBad] = 299.0;
+  for (Values* values : {&p.density_excess, &p.density_excess_half}) {
+    if (!values->empty()) (*values)[kBad] = 299.0;
   }
-  for (std::vector<double> Particles::*field : {&Particles::vx, &Particles::vx_half}) {
-    if (!(p.*field).empty()) (p.*field)[kBad] = 19.5;
+  for (Values* values : {&p.velocity[0], &p.velocity_half[0]}) {
+    if (!values->empty()) (*values)[kBad] = 19.5;
   }
   return state;
 }
@@ -141,7 +140,7 @@ TEST(Exclusion, TakesTheExtremesOfTheOthers) {
       const SolverState state = solver.state();
       double fastest = 0.0;
       for (std::size_t i = 0; i < state.particles.size(); ++i) {
-        fastest = std::max(fastest, state.particles.velocity(i).norm());
+        fastest = std::max(fastest, state.particles.velocity_of(i).norm());
       }
       EXPECT_DOUBLE_EQ(solver.extremes().max_speed, fastest);
     }
@@ -172,9 +171,9 @@ TEST(Exclusion, BooksMassMomentumAndEnergy) {
   SolverState state = start_from(block());
   Particles& p = state.particles;
   p.density_excess[kBad] = 400.0;
-  p.vx[kBad] = 3.0;
-  p.vy[kBad] = -4.0;
-  const Vec place = p.position(kBad);
+  p.velocity[0][kBad] = 3.0;
+  p.velocity[1][kBad] = -4.0;
+  const Vec place = p.position_of(kBad);
   const Solver solver(m, state, {}, {});
   ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
@@ -192,8 +191,8 @@ TEST(Exclusion, BooksMassMomentumAndEnergy) {
 
 TEST(Exclusion, KeepsNoNumberThatIsNone) {
   SolverState state = start_from(block());
-  state.particles.x[kBad] = kNan;
-  state.particles.vx[kBad] = kInfinity;
+  state.particles.position[0][kBad] = kNan;
+  state.particles.velocity[0][kBad] = kInfinity;
   state.particles.density_excess[kBad] = kNan;
   const Solver solver(plain_method(), state, {}, {});
   ASSERT_EQ(solver.removed().size(), 1U);
@@ -216,8 +215,8 @@ TEST(Solids, TakeWhoIsDeepInThemForALeakWithinFourCrossings) {
     ASSERT_EQ(solver.removed().size(), 1U);
     EXPECT_EQ(solver.removed()[0].id, 0.0);
     EXPECT_EQ(solver.removed()[0].cause, RemovalCause::leaked);
-    EXPECT_GT(solver.removed()[0].x, 0.5);
-    EXPECT_LE(solver.removed()[0].x, 0.5 + 10.0 * 4.0 * 0.1 / 20.0);
+    EXPECT_GT(solver.removed()[0].position.x(), 0.5);
+    EXPECT_LE(solver.removed()[0].position.x(), 0.5 + 10.0 * 4.0 * 0.1 / 20.0);
   }
 }
 

@@ -54,7 +54,7 @@ double worst_pressure_error(const Method& m) {
   EXPECT_EQ(solver.particle_count(), static_cast<std::size_t>(kColumns * kRows));
   // Still: far below sqrt(g H).
   EXPECT_LT(solver.extremes().max_speed, 0.05 * std::sqrt(kG * kDepth));
-  EXPECT_NEAR(solver.surface_height_at(0.0).value, kCorner.y() + kDepth, 0.5 * kDx);
+  EXPECT_NEAR(solver.surface_height_at({0.0, 0.0}).value, kCorner.y() + kDepth, 0.5 * kDx);
   double worst = 0.0;
   for (double y = kCorner.y() + 3.0 * kDx; y < kCorner.y() + kDepth - 3.0 * kDx; y += 0.5 * kDx) {
     const double error = solver.pressure_at({0.0, y}, kDx).value - weight_above(y);

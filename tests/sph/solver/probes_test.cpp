@@ -117,7 +117,7 @@ TEST(SurfaceProbe, FindsTheTopOfALatticeToAQuarterOfASpacing) {
       m.smoothing_length = ratio * kDx;
       const Solver solver(m, start_from(still_block()), {}, {});
       for (double x = -0.6; x < 0.6; x += 0.037) {
-        const Probe probe = solver.surface_height_at(x);
+        const Probe probe = solver.surface_height_at({x, 0.0});
         EXPECT_NEAR(probe.value, 0.6, 0.25 * kDx) << "x = " << x << ", h/dx = " << ratio;
         EXPECT_GE(probe.weight, 0.5);
       }
@@ -130,14 +130,14 @@ TEST(SurfaceProbe, DoesNotCountADropletAboveTheSurface) {
   fluid.add({0.0, 1.5});
   fluid.add({0.3, 1.0});
   const Solver solver(plain_method(), start_from(fluid), {}, {});
-  EXPECT_NEAR(solver.surface_height_at(0.0).value, 0.6, 0.25 * kDx);
-  EXPECT_NEAR(solver.surface_height_at(0.3).value, 0.6, 0.25 * kDx);
+  EXPECT_NEAR(solver.surface_height_at({0.0, 0.0}).value, 0.6, 0.25 * kDx);
+  EXPECT_NEAR(solver.surface_height_at({0.3, 0.0}).value, 0.6, 0.25 * kDx);
 }
 
 TEST(SurfaceProbe, HasNoWeightWhereNoFluidIs) {
   const Solver solver(plain_method(), start_from(still_block()), {}, {});
   for (const double x : {-1.9, 1.4, 1.9, 50.0, -50.0}) {
-    EXPECT_EQ(solver.surface_height_at(x).weight, 0.0) << x;
+    EXPECT_EQ(solver.surface_height_at({x, 0.0}).weight, 0.0) << x;
   }
 }
 

@@ -152,7 +152,7 @@ TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
     expect_same_bits(watched.state(), watched.state(), "taken twice");
     static_cast<void>(watched.energy());
     static_cast<void>(watched.pressure_at({0.0, -1.0}, 0.12));
-    static_cast<void>(watched.surface_height_at(0.0));
+    static_cast<void>(watched.surface_height_at({0.0, 0.0}));
     static_cast<void>(watched.wall_pressures());
     watched.step();
   }
@@ -180,7 +180,7 @@ TEST_P(ThreadsAndRestart, WhatReadersSeeDoesNotDependOnAStop) {
   run_steps(solver, 33);
   const Solver next(m, solver.state(), tank(), {});
   for (double x = -1.5; x < 1.7; x += 0.31) {
-    EXPECT_EQ(next.surface_height_at(x).value, solver.surface_height_at(x).value);
+    EXPECT_EQ(next.surface_height_at({x, 0.0}).value, solver.surface_height_at({x, 0.0}).value);
     const Vec point(x, -1.3);
     EXPECT_EQ(next.pressure_at(point, 0.12).value, solver.pressure_at(point, 0.12).value);
     EXPECT_EQ(next.pressure_at(point, 0.12).weight, solver.pressure_at(point, 0.12).weight);
@@ -202,8 +202,8 @@ SolverState shuffled(const SolverState& state, std::uint64_t seed) {
   for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[dice.below(k)]);
   SolverState other = state;
   for (const Field& field : kFields) {
-    const auto& from = state.particles.*field.member;
-    auto& to = other.particles.*field.member;
+    const auto& from = field.values.of(state.particles);
+    auto& to = field.values.of(other.particles);
     for (std::size_t k = 0; k < from.size(); ++k) to[k] = from[order[k]];
   }
   return other;
@@ -288,7 +288,7 @@ RC_GTEST_PROP(RestartProperty, AnySmallFluidGoesOnWithTheSameBits, ()) {
   const SolverState a = whole.state();
   const SolverState b = second.state();
   for (const Field& field : kFields) {
-    const bool same = a.particles.*field.member == b.particles.*field.member;
+    const bool same = field.values.of(a.particles) == field.values.of(b.particles);
     RC_ASSERT(same);
   }
   RC_ASSERT(a.time == b.time);

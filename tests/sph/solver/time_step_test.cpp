@@ -91,7 +91,7 @@ TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
     for (const RemovedParticle& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 3.0;
       EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
-      EXPECT_FALSE(m.domain.contains({r.x, r.y})) << r.id;
+      EXPECT_FALSE(m.domain.contains(r.position)) << r.id;
       EXPECT_GT(r.step, 0U);
       EXPECT_GT(r.time, 0.0);
       EXPECT_LE(r.time, solver.time());
@@ -117,7 +117,7 @@ TEST(Leaving, OverTheRimIsOvertoppingBeforeItFallsBehindTheWall) {
     for (const RemovedParticle& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 2.0;
       EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
-      EXPECT_EQ(m.domain.contains({r.x, r.y}), over) << r.id;
+      EXPECT_EQ(m.domain.contains(r.position), over) << r.id;
     }
   }
 }
@@ -145,7 +145,7 @@ TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
     run_until_removed(solver);
     ASSERT_EQ(solver.removed().size(), 1U);
     ASSERT_EQ(solver.removed()[0].id, 40.0);
-    EXPECT_LT(solver.removed()[0].y, 2.1) << "it is far away: this test proves nothing";
+    EXPECT_LT(solver.removed()[0].position.y(), 2.1) << "it is far away: this test proves nothing";
     for (int n = 0; n < 5; ++n) {
       const Fluid fluid = fluid_of(solver.state());
       ASSERT_EQ(fluid.size(), 40U);
@@ -181,7 +181,7 @@ TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
       EXPECT_EQ(solver.extremes().max_speed, 0.0);
       EXPECT_EQ(solver.surge_front().weight, 0.0);
       EXPECT_EQ(solver.pressure_at({0.0, 0.0}, 0.1).weight, 0.0);
-      EXPECT_EQ(solver.surface_height_at(0.0).weight, 0.0);
+      EXPECT_EQ(solver.surface_height_at({0.0, 0.0}).weight, 0.0);
       EXPECT_EQ(solver.wall_pressures(), std::vector<double>{0.0});
       // The empty state is one to go on from.
       Solver next(m, solver.state(), {{0.0, -1.0}}, {});

@@ -329,10 +329,10 @@ TEST(ReinitialisationTerm, MovesBothTimeLevelsByTheSameIncrement) {
   Particles& p = state.particles;
   state.step = 20;
   state.time_step = 1e-4;
-  p.vx_half = p.vy_half = {0.0, 0.0};
+  p.velocity_half[0] = p.velocity_half[1] = {0.0, 0.0};
   p.density_excess_half = {9.0, 27.0};
-  p.x_sorted = p.x;
-  p.y_sorted = p.y;
+  p.position_sorted[0] = p.position[0];
+  p.position_sorted[1] = p.position[1];
   Solver solver(m, state, {}, {});
   solver.step();
   // rho = (W0 + W1)/(W0/rho_i + W1/rho_j); nothing moves yet, so the step itself adds nothing.

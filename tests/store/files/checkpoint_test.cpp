@@ -95,14 +95,16 @@ TEST(CheckpointFile, OfAnotherFormatIsRefused) {
 TEST(CheckpointFile, IsNotWrittenFromContentThatBreaksTheRules) {
   const TemporaryFolder folder;
   const std::vector<std::function<void(Checkpoint&)>> faults{
-      [](Checkpoint& c) { c.solver.particles.vx[3] = kNan; },
+      [](Checkpoint& c) { c.solver.particles.velocity[0][3] = kNan; },
       [](Checkpoint& c) { c.solver.particles.id[0] = HUGE_VAL; },
-      [](Checkpoint& c) { c.solver.particles.vy.pop_back(); },
-      [](Checkpoint& c) { c.solver.particles.x.push_back(0.0); },
-      [](Checkpoint& c) { c.solver.particles.ax.resize(50); },  // not carried by this integrator
+      [](Checkpoint& c) { c.solver.particles.velocity[1].pop_back(); },
+      [](Checkpoint& c) { c.solver.particles.position[0].push_back(0.0); },
+      [](Checkpoint& c) {
+        c.solver.particles.acceleration[0].resize(50);
+      },  // not carried by this integrator
       [](Checkpoint& c) { c.solver.time = kNan; },
       [](Checkpoint& c) { c.solver.time_step = -HUGE_VAL; },
-      [](Checkpoint& c) { c.solver.removed[1].x = kNan; },
+      [](Checkpoint& c) { c.solver.removed[1].position[0] = kNan; },
       [](Checkpoint& c) { c.guards.energy_scale = kNan; },
       [](Checkpoint& c) { c.samples[0].weight[0] = 0.5; },  // NaN with a weight
       [](Checkpoint& c) { c.samples[0].values[1] = HUGE_VAL; },
@@ -344,7 +346,8 @@ TEST(CheckpointLayout, WithoutTheVelocitiesOfWhatLeftIsStillRead) {
   Checkpoint written = make_checkpoint(5);
   const Bytes old = as_version(with_places_alone(encode_checkpoint(written)), 4);
   for (RemovedParticle& removed : written.solver.removed) {
-    removed.vx = removed.vy = removed.density_excess = 0.0;
+    removed.velocity.setZero();
+    removed.density_excess = 0.0;
   }
   EXPECT_TRUE(same_bits(decode_checkpoint(old), written));
   expect_fault(StorageFault::corrupt, [&] { (void)decode_checkpoint(as_version(old, 5)); });
@@ -425,9 +428,9 @@ TEST(FrameFile, ComesBackToTheLastBit) {
     const Snapshot frame = make_test_snapshot(count);
     write_snapshot(folder / snapshot_name(12), frame);
     EXPECT_EQ(read_snapshot(folder / "frame-000012.h5"), frame);
-    EXPECT_EQ(std::signbit(read_snapshot(folder / "frame-000012.h5").vy.empty()
+    EXPECT_EQ(std::signbit(read_snapshot(folder / "frame-000012.h5").velocity[1].empty()
                                ? -0.0F
-                               : read_snapshot(folder / "frame-000012.h5").vy[0]),
+                               : read_snapshot(folder / "frame-000012.h5").velocity[1][0]),
               true);
   }
 }
@@ -448,7 +451,7 @@ TEST(FrameFile, HoldsThePressureOfTheEquationOfState) {
   // eq. 3: p = c^2 (rho - rho_0)
   EXPECT_EQ(frame.pressure[10], static_cast<float>(400.0 * state.particles.density_excess[10]));
   EXPECT_EQ(frame.step, 3U);
-  EXPECT_EQ(frame.x.size(), state.particles.size());
+  EXPECT_EQ(frame.size(), state.particles.size());
 }
 
 }  // namespace

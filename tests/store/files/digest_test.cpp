@@ -59,17 +59,13 @@ TEST(PhysicsDigest, ChangesWithEveryBitOfEveryNumber) {
   flip(checkpoint.solver.time_step);
   flip(checkpoint.next_snapshot);
   for (const Field& field : kFields) {
-    flip(checkpoint.solver.particles.*field.member);
+    flip(field.values.of(checkpoint.solver.particles));
   }
   for (RemovedParticle& removed : checkpoint.solver.removed) {
     flip(removed.id);
     flip(removed.step);
     flip(removed.time);
-    flip(removed.x);
-    flip(removed.y);
-    flip(removed.vx);
-    flip(removed.vy);
-    flip(removed.density_excess);
+    for (const RemovedField& field : kRemovedFields) flip(field.value.of(removed));
   }
   for (SampleTable& table : checkpoint.samples) {
     flip(table.time);
@@ -87,7 +83,7 @@ TEST(PhysicsDigest, ChangesWithEveryBitOfEveryNumber) {
 TEST(PhysicsDigest, ChangesWithTheOrderOfParticlesCausesAndTexts) {
   const std::string before = physics_digest(make_checkpoint(20, 3));
   Checkpoint swapped = make_checkpoint(20, 3);
-  std::swap(swapped.solver.particles.x[0], swapped.solver.particles.x[1]);
+  std::swap(swapped.solver.particles.position[0][0], swapped.solver.particles.position[0][1]);
   EXPECT_NE(physics_digest(swapped), before);
   Checkpoint cause = make_checkpoint(20, 3);
   cause.solver.removed[0].cause = RemovalCause::leaked;

@@ -24,8 +24,8 @@ bool mentions(const Inspection& inspection, const std::string& text) {
 TEST(Inspect, TellsWhatACheckpointHolds) {
   const TemporaryFolder folder;
   Checkpoint checkpoint = make_checkpoint(20);
-  checkpoint.solver.particles.x.assign(50, 0.5);
-  checkpoint.solver.particles.x[3] = -2.0;
+  checkpoint.solver.particles.position[0].assign(50, 0.5);
+  checkpoint.solver.particles.position[0][3] = -2.0;
   const Inspection inspection = inspect_file(write_checkpoint(folder.path(), checkpoint));
   EXPECT_EQ(inspection.verdict, Verdict::whole);
   for (const char* text : {"sluice-checkpoint", "scene_hash", "AVX2", "/particles/vx_half", "m/s",

@@ -92,7 +92,7 @@ RC_GTEST_PROP(CheckpointFile, AnySoundContentComesBack, ()) {
   checkpoint.solver.time = *finite_double();
   for (const Field& field : kFields) {
     if (carries(integrator, field)) {
-      checkpoint.solver.particles.*field.member = finite_doubles(count);
+      field.values.of(checkpoint.solver.particles) = finite_doubles(count);
     }
   }
   checkpoint.solver.removed.resize(*rc::gen::inRange<std::size_t>(0, 5), {1.0});

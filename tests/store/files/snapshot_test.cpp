@@ -18,8 +18,8 @@ SolverState row_from(double start, std::size_t count) {
   SolverState state = make_checkpoint(1).solver;
   Particles& particles = state.particles;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    particles.x[i] = start + 0.01 * static_cast<double>(i % count);
-    particles.y[i] = 0.005;
+    particles.position[0][i] = start + 0.01 * static_cast<double>(i % count);
+    particles.position[1][i] = 0.005;
   }
   return state;
 }
@@ -31,18 +31,19 @@ TEST(FrameFile, FarFromZeroKeepsParticlesApartToAThousandthOfTheirDistance) {
     write_snapshot(folder / "f.h5", make_snapshot(state, Method{}));
     const Snapshot frame = read_snapshot(folder / "f.h5");
     std::set<double> places;
-    for (std::size_t i = 0; i < frame.x.size(); ++i) {
-      EXPECT_NEAR(frame.position(i).x(), state.particles.x[i], 1e-5 + 1e-15 * std::abs(start));
-      EXPECT_NEAR(frame.position(i).y(), 0.005, 1e-9);
-      places.insert(frame.position(i).x());
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      EXPECT_NEAR(frame.position_of(i).x(), state.particles.position[0][i],
+                  1e-5 + 1e-15 * std::abs(start));
+      EXPECT_NEAR(frame.position_of(i).y(), 0.005, 1e-9);
+      places.insert(frame.position_of(i).x());
     }
     EXPECT_EQ(places.size(), 50U);
   }
 }
 
 TEST(FrameFile, NearZeroHasItsOriginThere) {
-  EXPECT_EQ(make_snapshot(row_from(0.0, 50), Method{}).origin_x, 0.0);
-  EXPECT_EQ(make_snapshot(row_from(-0.2, 50), Method{}).origin_x, 0.0);
+  EXPECT_EQ(make_snapshot(row_from(0.0, 50), Method{}).origin.x(), 0.0);
+  EXPECT_EQ(make_snapshot(row_from(-0.2, 50), Method{}).origin.x(), 0.0);
 }
 
 TEST(FrameFile, OfTheFirstVersionIsReadWithPositionsFromZero) {
@@ -71,7 +72,7 @@ TEST(FrameFile, OfTheFirstVersionIsReadWithPositionsFromZero) {
   publish(folder / "f.h5", writer.image(), Durability::process_crash);
   const Snapshot frame = read_snapshot(folder / "f.h5");
   EXPECT_EQ(frame.step, 7U);
-  EXPECT_EQ(frame.position(1).x(), 0.5);
+  EXPECT_EQ(frame.position_of(1).x(), 0.5);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "engine/space/vec.hpp"
+
+namespace sluice {
+
+/// One value for each axis of space, in the order of kAxisNames.
+template <class T>
+using PerAxis = std::array<T, kDim>;
+
+/// The i-th values of all axes.
+template <class T>
+[[nodiscard]] Eigen::Matrix<T, kDim, 1> vector_of(const PerAxis<std::vector<T>>& values,
+                                                  std::size_t i) {
+  Eigen::Matrix<T, kDim, 1> vector;
+  for (std::size_t axis = 0; axis < values.size(); ++axis) {
+    vector[static_cast<Eigen::Index>(axis)] = values[axis][i];
+  }
+  return vector;
+}
+
+/// Adds the components of a vector, each to the values of its axis.
+template <class T, class Vector>
+void append(PerAxis<std::vector<T>>& values, const Vector& vector) {
+  for (std::size_t axis = 0; axis < values.size(); ++axis) {
+    values[axis].push_back(vector[static_cast<Eigen::Index>(axis)]);
+  }
+}
+
+inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
+
+[[nodiscard]] inline std::string_view axis_name(Eigen::Index axis) {
+  return kAxisNames[static_cast<std::size_t>(axis)];
+}
+
+/// The axis along which heights are measured.
+inline constexpr int kUpAxis = 1;
+/// The others: a place on the floor.
+inline constexpr std::array<int, kDim - 1> kFloorAxes{0};
+
+[[nodiscard]] inline bool points_straight_down(const Vec& vector) {
+  return vector[kUpAxis] < 0.0 && vector.cwiseAbs().sum() == -vector[kUpAxis];
+}
+
+}  // namespace sluice
