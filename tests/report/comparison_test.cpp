@@ -163,7 +163,7 @@ TEST(Comparison, HasNoMeanWhereASensorOfTheExperimentIsMissing) {
   const Scene scene = half_size_scene();
   Reference reference = made_up_reference();
   reference.pressures.push_back(reference.pressures.front());
-  reference.pressures.back().height = 0.08;
+  reference.pressures.back().place.y() = 0.08;
   const Comparison comparison = compare(
       scene, {series_of(scene, "low", "pressure", unit_of_pressure(scene), impact)}, reference);
   EXPECT_EQ(comparison.pressures.size(), 1u);

@@ -36,7 +36,7 @@ TEST(References, HoldTheExperimentWithItsFourSensorsFourLevelsAndFront) {
   const Reference& reference = lobovsky();
   ASSERT_EQ(reference.pressures.size(), 4u);
   EXPECT_EQ(reference.pressures[0].name, "P1");
-  EXPECT_DOUBLE_EQ(reference.pressures[0].height, 0.003);
+  EXPECT_DOUBLE_EQ(reference.pressures[0].place.y(), 0.003);
   EXPECT_DOUBLE_EQ(reference.pressures[0].arrival, 2.443);
   EXPECT_DOUBLE_EQ(reference.pressures[0].peak.median, 3.116);
   ASSERT_EQ(reference.levels.size(), 4u);
