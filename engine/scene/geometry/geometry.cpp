@@ -107,17 +107,6 @@ Box bounds(const Shape& shape) {
                     shape);
 }
 
-Box grown(Box box, double margin) {
-  box.min.array() -= margin;
-  box.max.array() += margin;
-  return box;
-}
-
-bool overlap(const Box& one, const Box& other) {
-  return (one.min.array() <= other.max.array()).all() &&
-         (one.max.array() >= other.min.array()).all();
-}
-
 double area(const Shape& shape) {
   return std::visit(Overloaded{
                         [](const Rectangle& s) { return s.size.prod(); },

@@ -9,12 +9,6 @@ namespace sluice {
 /// The smallest box around a shape, m.
 [[nodiscard]] Box bounds(const Shape& shape);
 
-/// The box with a margin on all sides, m; less on all sides where it is negative.
-[[nodiscard]] Box grown(Box box, double margin);
-
-/// Whether two boxes have a point in common.
-[[nodiscard]] bool overlap(const Box& one, const Box& other);
-
 /// Area, m^2; of a polygon without self-intersections.
 [[nodiscard]] double area(const Shape& shape);
 
