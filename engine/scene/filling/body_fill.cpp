@@ -20,71 +20,6 @@ void add_chords(const Shape& shape, double x, Intervals& line) {
   for (std::size_t i = 0; i + 1 < at.size(); i += 2) line.emplace_back(at[i], at[i + 1]);
 }
 
-Intervals merged(Intervals line) {
-  std::sort(line.begin(), line.end());
-  Intervals result;
-  for (const auto& [begin, end] : line) {
-    if (!result.empty() && begin <= result.back().second) {
-      result.back().second = std::max(result.back().second, end);
-    } else if (begin < end) {
-      result.emplace_back(begin, end);
-    }
-  }
-  return result;
-}
-
-/// What of `line` no interval of `taken` covers; both merged.
-Intervals without(const Intervals& line, const Intervals& taken) {
-  Intervals result;
-  for (auto [begin, end] : line) {
-    for (const auto& [low, high] : taken) {
-      if (high <= begin || low >= end) continue;
-      if (low > begin) result.emplace_back(begin, low);
-      begin = high;
-      if (begin >= end) break;
-    }
-    if (begin < end) result.emplace_back(begin, end);
-  }
-  return result;
-}
-
-double length(const Intervals& line) {
-  double sum = 0.0;
-  for (const auto& [begin, end] : line) sum += end - begin;
-  return sum;
-}
-
-/// Heights that part the summed length of some lines into `count` equal shares, the middle of each.
-std::vector<double> middles(const std::vector<Intervals>& lines, std::size_t count) {
-  std::vector<std::pair<double, int>> events;
-  double total = 0.0;
-  for (const Intervals& line : lines) {
-    total += length(line);
-    for (const auto& [begin, end] : line) {
-      events.emplace_back(begin, 1);
-      events.emplace_back(end, -1);
-    }
-  }
-  std::sort(events.begin(), events.end());
-  std::vector<double> result;
-  double below = 0.0;
-  int width = 0;
-  for (std::size_t i = 0; i + 1 < events.size(); ++i) {
-    width += events[i].second;
-    const double rise = events[i + 1].first - events[i].first;
-    const double share = total / static_cast<double>(count);
-    while (result.size() < count) {
-      const double wanted = (static_cast<double>(result.size()) + 0.5) * share;
-      if (width == 0 || wanted > below + width * rise) break;
-      result.push_back(events[i].first + (wanted - below) / width);
-    }
-    below += width * rise;
-  }
-  // The last one may have missed its share by rounding.
-  while (result.size() < count) result.push_back(events.back().first);
-  return result;
-}
-
 }  // namespace
 
 BodyFill::BodyFill(const Scene& scene) : scene_(scene), solids_(solid_bodies(scene)) {}
@@ -121,11 +56,11 @@ std::size_t BodyFill::count(std::size_t region) const {
   double area = 0.0;
   for_each_column(region, [&](const Column& column) { area += column.area; });
   const double dx = scene_.method.spacing;
-  return static_cast<std::size_t>(std::llround(area / (dx * dx)));
+  return static_cast<std::size_t>(std::llround(area / cell_measure<kDim>(dx)));
 }
 
 std::vector<Vec> BodyFill::places(std::size_t region) const {
-  const double cell = scene_.method.spacing * scene_.method.spacing;
+  const double cell = cell_measure<kDim>(scene_.method.spacing);
   std::vector<Vec> result;
   double area = 0.0;
   for_each_column(region, [&](const Column& column) {
@@ -190,8 +125,8 @@ std::vector<FixedPoint> BodyFill::outside(const std::vector<std::size_t>& region
       const std::int64_t count = whole_cells(end - begin, step);
       const double rise = (end - begin) / static_cast<double>(count);
       for (std::int64_t i = 0; i < count; ++i) {
-        result.push_back(
-            {Vec(x, begin + (static_cast<double>(i) + 0.5) * rise), rise * width / (dx * dx)});
+        result.push_back({Vec(x, begin + (static_cast<double>(i) + 0.5) * rise),
+                          rise * width / cell_measure<kDim>(dx)});
       }
     }
   }

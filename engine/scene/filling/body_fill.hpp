@@ -1,17 +1,15 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
+#include "engine/scene/filling/intervals.hpp"
 #include "engine/scene/filling/packing.hpp"
 #include "engine/scene/model/scene.hpp"
 
 namespace sluice {
 
-/// Intervals [begin, end] of a vertical line, apart and from the bottom up, m.
-using Intervals = std::vector<std::pair<double, double>>;
-
-/// Fills regions to their area, wherever their outlines lie: for packing to make uniform.
+/// Fills regions of the plane to their area, wherever their outlines lie: for packing to make
+/// uniform.
 class BodyFill {
  public:
   explicit BodyFill(const Scene& scene);

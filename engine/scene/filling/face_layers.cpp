@@ -78,7 +78,7 @@ class FaceLayers {
         covered_(covered),
         made_(dx_) {
     std::vector<Vec> corners = polygon.points;
-    if (is_clockwise(corners)) std::reverse(corners.begin(), corners.end());
+    if (twice_signed_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vec edge = corners[(i + 1) % corners.size()] - corners[i];
       const Vec along = edge.normalized();
@@ -110,16 +110,6 @@ class FaceLayers {
   }
 
  private:
-  static bool is_clockwise(const std::vector<Vec>& corners) {
-    double twice_area = 0.0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vec a = corners[i] - corners[0];
-      const Vec b = corners[(i + 1) % corners.size()] - corners[0];
-      twice_area += a.x() * b.y() - a.y() * b.x();
-    }
-    return twice_area < 0.0;
-  }
-
   /// Whether something holds at places half a spacing apart along a face.
   template <class F>
   [[nodiscard]] bool all_along(const Face& face, const F& holds) const {

@@ -80,7 +80,7 @@ Places on_lattice(const Scene& scene) {
   for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
     std::vector<Vec>& points = places.emplace_back();
     CellSet cells(scene.fluid[i].shape, scene.method.spacing, CellFit::exact_spacing);
-    cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+    cells.for_each([&](const Vec& point, const auto&) {
       if (solid.takes(point)) return;
       require_apart(earlier, point, i);
       points.push_back(point);

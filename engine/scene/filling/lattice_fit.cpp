@@ -60,9 +60,7 @@ struct FacesSeenFrom {
   double dx;
 
   std::vector<Facing> operator()(const Rectangle& s) const {
-    const Vec across(s.size.x(), 0.0);
-    std::vector<Facing> found =
-        outline({s.corner, s.corner + across, s.corner + s.size, s.corner + s.size - across});
+    std::vector<Facing> found = outline(as_polygon(s).points);
     for (Facing& face : found) face.backed = has_full_cells(s, dx);
     return found;
   }
@@ -90,7 +88,7 @@ class FitCheck {
   std::optional<std::string> misfit() {
     for (const std::size_t region : body_) {
       const CellSet cells(scene_.fluid[region].shape, dx_, CellFit::exact_spacing);
-      cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+      cells.for_each([&](const Vec& point, const auto&) {
         if (!reason_) visit(point);
       });
       if (reason_) return reason_;
@@ -213,7 +211,7 @@ std::vector<bool> beside_misfits(const Scene& scene) {
         if (beside[i]) continue;
         const Box box = grown(bounds(scene.obstacles[i]), reach);
         if (!overlap(bounds(scene.fluid[region].shape), box)) continue;
-        cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+        cells.for_each([&](const Vec& point, const auto&) {
           if (beside[i] || !box.contains(point)) return;
           beside[i] = std::abs(signed_distance(scene.obstacles[i], point)) < reach;
         });
