@@ -97,7 +97,7 @@ Places on_lattice(const Scene& scene) {
 
 PackingReport pack_body(const Scene& scene, const Body& body, const std::vector<Vec>& walls,
                         Places& places) {
-  const BodyFill fill(scene);
+  const BodyFill fill = body_fill_of(scene);
   std::vector<FixedPoint> fixed = fill.outside(body);
   for (const Vec& wall : walls) fixed.push_back({wall, 1.0});
   std::vector<Vec> points;
@@ -166,7 +166,7 @@ StartPlan start_plan(const Scene& scene) {
     const std::optional<std::string> misfit = lattice_misfit(scene, body);
     if (misfit && !plan.packed) plan.reason = *misfit;
     plan.packed = plan.packed || misfit.has_value();
-    const BodyFill fill(scene);
+    const BodyFill fill = body_fill_of(scene);
     for (const std::size_t region : body) {
       plan.fluid_particles += misfit ? fill.count(region) : places[region].size();
     }

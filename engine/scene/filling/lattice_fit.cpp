@@ -151,7 +151,7 @@ class FitCheck {
   }
 
   [[nodiscard]] std::optional<std::string> wrong_area() const {
-    const BodyFill fill(scene_);
+    const BodyFill fill = body_fill_of(scene_);
     std::size_t wanted = 0;
     for (const std::size_t region : body_) wanted += fill.count(region);
     const double share = static_cast<double>(count_) / static_cast<double>(wanted) - 1.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -104,6 +105,27 @@ template <int Dim>
 [[nodiscard]] std::vector<double> chords(const Ball<Dim>& s, const PointN<Dim>& origin,
                                          const PointN<Dim>& direction) {
   return chords(Ellipsoid<Dim>{s.center, VecN<Dim>::Constant(s.radius)}, origin, direction);
+}
+
+/// Of a rectangle plane_shapes.hpp has others, by its outline: results depend on their last bits.
+template <int Dim>
+[[nodiscard]] std::vector<double> chords(const Cuboid<Dim>& s, const PointN<Dim>& origin,
+                                         const PointN<Dim>& direction) {
+  double enter = -std::numeric_limits<double>::infinity();
+  double leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < Dim; ++axis) {
+    const double low = s.corner[axis] - origin[axis];
+    const double high = s.corner[axis] + s.size[axis] - origin[axis];
+    if (direction[axis] == 0.0) {
+      if (low > 0.0 || high <= 0.0) return {};
+      continue;
+    }
+    const double one = low / direction[axis], other = high / direction[axis];
+    enter = std::max(enter, std::min(one, other));
+    leave = std::min(leave, std::max(one, other));
+  }
+  if (!(enter < leave)) return {};
+  return {enter, leave};
 }
 
 }  // namespace sluice

@@ -48,9 +48,7 @@ using Solids = SolidsN<kDim>;
 
 /// The solids of a scene, which must outlive them.
 [[nodiscard]] inline Solids solids_of(const Scene& scene) {
-  std::optional<TankRoom> tank;
-  if (scene.tank) tank = room_of(*scene.tank);
-  return {scene.obstacles, tank, scene.method.spacing};
+  return {scene.obstacles, room_of(scene), scene.method.spacing};
 }
 
 }  // namespace sluice

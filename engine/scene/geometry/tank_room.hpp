@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 
 #include "engine/scene/model/scene.hpp"
 #include "engine/space/space_traits.hpp"
@@ -51,6 +52,9 @@ using TankRoom = TankRoomN<kDim>;
 
 [[nodiscard]] inline TankRoom room_of(const Tank& tank) {
   return {Vec(tank.width, tank.height), tank.open_top};
+}
+[[nodiscard]] inline std::optional<TankRoom> room_of(const Scene& scene) {
+  return scene.tank ? std::optional(room_of(*scene.tank)) : std::nullopt;
 }
 
 }  // namespace sluice

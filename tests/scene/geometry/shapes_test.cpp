@@ -95,6 +95,26 @@ TYPED_TEST(Shapes, ChordsAreWhereALineEntersAndLeaves) {
   EXPECT_NEAR(through[0], 1.0 - 2.0 / std::sqrt(kD), 1e-14);
   EXPECT_NEAR(through[1], 1.0 + 2.0 / std::sqrt(kD), 1e-14);
   EXPECT_TRUE(chords(ball, Point(4.0 * Point::Unit(1)), Point::Unit(0)).empty());
+  const Cuboid<kD> cube{Point::Ones(), Point::Ones()};
+  const std::vector<double> diagonal = chords(cube, Point::Zero(), Point::Ones());
+  ASSERT_EQ(diagonal.size(), 2U);
+  EXPECT_NEAR(diagonal[0], 1.0, 1e-14);
+  EXPECT_NEAR(diagonal[1], 2.0, 1e-14);
+  const Point below = Point::Constant(1.25) - 3.0 * Point::Unit(kUpAxis);
+  EXPECT_EQ(chords(cube, below, Point::Unit(kUpAxis)), (std::vector<double>{2.75, 3.75}));
+  EXPECT_TRUE(chords(cube, Point(below + Point::Unit(0)), Point::Unit(kUpAxis)).empty());
+}
+
+TEST(RectangleChords, AreThoseOfACuboid) {
+  const Rectangle rectangle{Vec(1.0, 2.0), Vec(3.0, 1.0)};
+  for (int k = 0; k < 100; ++k) {
+    const Vec direction(std::cos(0.1 * k), std::sin(0.1 * k));
+    const Vec origin(2.0 + std::sin(k), 2.5 + std::cos(k));
+    const std::vector<double> outline = chords(rectangle, origin, direction);
+    const std::vector<double> slabs = chords<2>(rectangle, origin, direction);
+    ASSERT_EQ(outline.size(), slabs.size()) << k;
+    for (std::size_t n = 0; n < slabs.size(); ++n) EXPECT_NEAR(outline[n], slabs[n], 1e-12) << k;
+  }
 }
 
 }  // namespace
