@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/space/vec.hpp"
@@ -35,6 +36,18 @@ template <int Dim>
     cell[axis] = static_cast<std::int64_t>(std::floor(point[axis]));
   }
   return cell;
+}
+
+/// The place of a cell among all between two, both included, row by row; that of `last` is their
+/// number less one.
+template <int Dim>
+[[nodiscard]] std::size_t index_between(const CellN<Dim>& first, const CellN<Dim>& last,
+                                        const CellN<Dim>& cell) {
+  std::int64_t index = 0;
+  for (int axis = Dim; axis-- > 0;) {
+    index = index * (last[axis] - first[axis] + 1) + cell[axis] - first[axis];
+  }
+  return static_cast<std::size_t>(index);
 }
 
 /// Calls f(cell) for the first cell of each row between two cells, both included. Rows run along x

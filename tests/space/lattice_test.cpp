@@ -25,6 +25,15 @@ TEST(Lattice, RowsOfSpaceAreNumberedByZThenByY) {
   EXPECT_EQ(cells<3>({0, 0, 0}, {1, 1, 1}), expected);
 }
 
+TEST(Lattice, CellsAreCountedInTheOrderInWhichTheyCome) {
+  const CellN<3> first{-1, 2, 0}, last{1, 4, 1};
+  std::size_t place = 0;
+  for (const CellN<3>& cell : cells<3>(first, last)) {
+    EXPECT_EQ(index_between<3>(first, last, cell), place++);
+  }
+  EXPECT_EQ(place, 18U);
+}
+
 TEST(Lattice, HasNoCellsWhereAnAxisHasNone) {
   EXPECT_TRUE(cells<2>({0, 0}, {-1, 3}).empty());
   EXPECT_TRUE(cells<3>({0, 0, 0}, {3, 3, -1}).empty());

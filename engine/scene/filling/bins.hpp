@@ -58,9 +58,7 @@ class Bins {
   }
   /// Of a cell among all, row by row.
   [[nodiscard]] std::size_t index(const CellN<Dim>& cell) const {
-    std::int64_t result = 0;
-    for (int axis = Dim; axis-- > 0;) result = result * (last_[axis] + 1) + cell[axis];
-    return static_cast<std::size_t>(result);
+    return index_between<Dim>({}, last_, cell);
   }
 
   double size_;

@@ -77,9 +77,7 @@ class LinesOnGround {
 
  private:
   [[nodiscard]] std::size_t index(const CellN<Dim>& cell) const {
-    std::int64_t result = 0;
-    for (int axis = Dim; axis-- > 0;) result = result * (last_[axis] + 1) + cell[axis];
-    return static_cast<std::size_t>(result);
+    return index_between<Dim>({}, last_, cell);
   }
 
   VecN<Dim> low_;

@@ -31,8 +31,8 @@ template <int Dim>
 using OwnWallsN = std::function<std::optional<std::vector<VecN<Dim>>>(std::size_t i)>;
 
 /// Dummy particles of solids, m: at the cell centres of each, from a cell size stretched to fit a
-/// cuboid and from dx otherwise, no deeper than the layers are many below the surface; or those that
-/// `own` gives. Where solids overlap, the first one's particles stand.
+/// cuboid and from dx otherwise, no deeper than the layers are many below the surface; or those
+/// that `own` gives. Where solids overlap, the first one's particles stand.
 template <int Dim>
 [[nodiscard]] std::vector<VecN<Dim>> walls_of_solids(const std::vector<ShapeN<Dim>>& solids,
                                                      const WallLayers& layers,

@@ -37,9 +37,7 @@ WaysN<Dim>::WaysN(const SolidsN<Dim>& solids, double spacing)
 
 template <int Dim>
 std::size_t WaysN<Dim>::index(const Node& n) const {
-  std::int64_t result = 0;
-  for (int axis = Dim; axis-- > 0;) result = result * (2 * half_ + 1) + n[axis] + half_;
-  return static_cast<std::size_t>(result);
+  return index_between<Dim>(shifted<Dim>({}, -half_), shifted<Dim>({}, half_), n);
 }
 
 template <int Dim>
