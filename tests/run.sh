@@ -108,7 +108,7 @@ step_asan() {
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
   # Properties hold for 100 cases each in the release build; here a quarter of them shows bad reads.
   export RC_PARAMS=${RC_PARAMS:-max_success=25}
-  local parts=(sph scene store export run draw study report)
+  local parts=(space sph scene store export run draw study report)
   if build asan "${parts[@]/#/test_}"; then
     # Names of scripts begin small: they run the program, which is not built here.
     check asan -R "^($(IFS='|' && echo "${parts[*]}"))\.[A-Z]" -LE long

@@ -70,7 +70,7 @@ std::string show(const Box& box) {
 void check_polygons(const Scene& scene, Problems& problems) {
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
     const auto* polygon = std::get_if<Polygon>(&shape);
-    if (polygon != nullptr && (!is_simple(*polygon) || area(shape) <= 0)) {
+    if (polygon != nullptr && (!is_simple(*polygon) || measure(shape) <= 0)) {
       problems.add(at(pointer, "points"),
                    "the outline crosses, touches or folds back on itself; give the corners in "
                    "order around an area, each once");

@@ -148,14 +148,14 @@ void check_line(const Sensor& sensor, const Scene& scene, const Solids& solids,
 }  // namespace
 
 void check_solids(const Scene& scene, Problems& problems, Problems& warnings) {
-  const Solids solids(scene);
+  const Solids solids = solids_of(scene);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     check_obstacle(scene, solids, i, problems, warnings);
   }
 }
 
 void check_sensor_places(const Scene& scene, Problems& warnings) {
-  const Solids solids(scene);
+  const Solids solids = solids_of(scene);
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const Sensor& sensor = scene.sensors[i];
     const std::string pointer = at("/sensors", i);

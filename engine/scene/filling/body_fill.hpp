@@ -1,44 +1,61 @@
 #pragma once
 
-#include <utility>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "engine/scene/filling/intervals.hpp"
 #include "engine/scene/filling/packing.hpp"
-#include "engine/scene/model/scene.hpp"
+#include "engine/scene/geometry/tank_room.hpp"
+#include "engine/space/lattice.hpp"
 
 namespace sluice {
 
-/// Intervals [begin, end] of a vertical line, apart and from the bottom up, m.
-using Intervals = std::vector<std::pair<double, double>>;
-
-/// Fills regions to their area, wherever their outlines lie: for packing to make uniform.
-class BodyFill {
+/// Fills regions to their measure, wherever their surfaces lie: for packing to make uniform. It
+/// goes by columns that stand side by side, each of a few upright lines.
+template <int Dim>
+class BodyFillN {
  public:
-  explicit BodyFill(const Scene& scene);
+  using Point = VecN<Dim>;
 
-  /// Places in a region less the solid bodies and what `before` names, round(area/dx^2) of them:
-  /// in columns about dx wide from the left, in each from the bottom up and evenly over its area.
-  [[nodiscard]] std::vector<Vec> places(std::size_t region) const;
+  BodyFillN(std::vector<ShapeN<Dim>> regions, std::vector<ShapeN<Dim>> solids,
+            std::optional<TankRoomN<Dim>> tank, double spacing);
+
+  /// Places in a region less the solids, round(measure/dx^d) of them: in columns about dx wide, row
+  /// by row, in each from the bottom up and evenly over what it holds.
+  [[nodiscard]] std::vector<Point> places(std::size_t region) const;
   /// How many places() makes.
   [[nodiscard]] std::size_t count(std::size_t region) const;
 
   /// The outside of a body's free faces, where neither fluid of these regions nor a solid is, as
-  /// far as it reaches into the packing's sums: points that stand for dx/4 x dx/4.
-  [[nodiscard]] std::vector<FixedPoint> outside(const std::vector<std::size_t>& regions) const;
+  /// far as it reaches into the packing's sums: points that stand for cells with sides of dx/4.
+  [[nodiscard]] std::vector<FixedPointN<Dim>> outside(
+      const std::vector<std::size_t>& regions) const;
 
  private:
+  /// A point on the ground, which has no height.
+  using Foot = Point;
   struct Column {
-    double x;
+    Foot foot;
     std::vector<Intervals> lines;  ///< of equal width
-    double area;
+    double measure;
   };
-  [[nodiscard]] Intervals open_line(std::size_t region, double x) const;
-  [[nodiscard]] Intervals solid_line(double x) const;
+
+  [[nodiscard]] Intervals open_line(std::size_t region, const Foot& foot) const;
+  [[nodiscard]] Intervals solid_line(const Foot& foot) const;
+  [[nodiscard]] Intervals tank_line(const Foot& foot) const;
   template <class F>
   void for_each_column(std::size_t region, const F& f) const;
 
-  const Scene& scene_;
-  std::vector<Shape> solids_;
+  std::vector<ShapeN<Dim>> regions_;
+  std::vector<ShapeN<Dim>> solids_;
+  std::optional<TankRoomN<Dim>> tank_;
+  double spacing_;
 };
+
+using BodyFill = BodyFillN<kDim>;
+
+/// The fluid of a scene among all that stands in its tank.
+[[nodiscard]] BodyFill body_fill_of(const Scene& scene);
 
 }  // namespace sluice

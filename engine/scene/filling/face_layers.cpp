@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <utility>
 
+#include "engine/scene/filling/apart_points.hpp"
 #include "engine/scene/filling/walls.hpp"
 #include "engine/scene/geometry/geometry.hpp"
 
@@ -18,40 +18,6 @@ constexpr double kLayerSlack = 1e-3;  // of dx: rounding far from the origin
 constexpr double kFarthest = 4.0;     // in dx, that a layer reaches past the end of its face
 constexpr double kCurved = 0.85;      // cosine of the turn up to which faces are one curved face
 constexpr double kStraight = 0.02;    // sine of a turn that is none
-
-/// Points that keep a distance to one another.
-class ApartPoints {
- public:
-  explicit ApartPoints(double cell) : cell_(cell) {}
-
-  void add(const Vec& point, double apart) {
-    const auto [column, row] = place(point);
-    for (std::int64_t c = column - 1; c <= column + 1; ++c) {
-      for (std::int64_t r = row - 1; r <= row + 1; ++r) {
-        const auto found = bins_.find({c, r});
-        if (found == bins_.end()) continue;
-        for (const Vec& other : found->second) {
-          if ((other - point).norm() < apart) return;
-        }
-      }
-    }
-    bins_[{column, row}].push_back(point);
-    points_.push_back(point);
-  }
-  [[nodiscard]] std::vector<Vec> take() { return std::move(points_); }
-
- private:
-  using Place = std::pair<std::int64_t, std::int64_t>;
-
-  [[nodiscard]] Place place(const Vec& point) const {
-    return {static_cast<std::int64_t>(std::floor(point.x() / cell_)),
-            static_cast<std::int64_t>(std::floor(point.y() / cell_))};
-  }
-
-  double cell_;
-  std::map<Place, std::vector<Vec>> bins_;
-  std::vector<Vec> points_;
-};
 
 struct Face {
   Vec begin = Vec::Zero();
@@ -78,7 +44,7 @@ class FaceLayers {
         covered_(covered),
         made_(dx_) {
     std::vector<Vec> corners = polygon.points;
-    if (is_clockwise(corners)) std::reverse(corners.begin(), corners.end());
+    if (twice_signed_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vec edge = corners[(i + 1) % corners.size()] - corners[i];
       const Vec along = edge.normalized();
@@ -110,16 +76,6 @@ class FaceLayers {
   }
 
  private:
-  static bool is_clockwise(const std::vector<Vec>& corners) {
-    double twice_area = 0.0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vec a = corners[i] - corners[0];
-      const Vec b = corners[(i + 1) % corners.size()] - corners[0];
-      twice_area += a.x() * b.y() - a.y() * b.x();
-    }
-    return twice_area < 0.0;
-  }
-
   /// Whether something holds at places half a spacing apart along a face.
   template <class F>
   [[nodiscard]] bool all_along(const Face& face, const F& holds) const {
@@ -207,7 +163,7 @@ class FaceLayers {
   std::int64_t layers_;
   const std::function<bool(const Vec&)>& covered_;
   std::vector<Face> faces_;
-  ApartPoints made_;
+  ApartPoints<2> made_;
 };
 
 }  // namespace

@@ -82,7 +82,7 @@ Places on_lattice(const Scene& scene) {
   for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
     std::vector<Vec>& points = places.emplace_back();
     CellSet cells(scene.fluid[i].shape, scene.method.spacing, CellFit::exact_spacing);
-    cells.for_each([&](const Vec& point, std::int64_t, std::int64_t) {
+    cells.for_each([&](const Vec& point, const auto&) {
       if (solid.takes(point)) return;
       require_apart(earlier, point, i);
       points.push_back(point);
@@ -99,7 +99,7 @@ Places on_lattice(const Scene& scene) {
 
 PackingReport pack_body(const Scene& scene, const Body& body, const std::vector<Vec>& walls,
                         Places& places) {
-  const BodyFill fill(scene);
+  const BodyFill fill = body_fill_of(scene);
   std::vector<FixedPoint> fixed = fill.outside(body);
   for (const Vec& wall : walls) fixed.push_back({wall, 1.0});
   std::vector<Vec> points;
@@ -165,7 +165,7 @@ StartPlan start_plan(const Scene& scene) {
     const std::optional<std::string> misfit = lattice_misfit(scene, body);
     if (misfit && !plan.packed) plan.reason = *misfit;
     plan.packed = plan.packed || misfit.has_value();
-    const BodyFill fill(scene);
+    const BodyFill fill = body_fill_of(scene);
     for (const std::size_t region : body) {
       plan.fluid_particles += misfit ? fill.count(region) : places[region].size();
     }

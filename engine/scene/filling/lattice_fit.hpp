@@ -1,19 +1,13 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/scene/filling/bodies.hpp"
 #include "engine/scene/model/scene.hpp"
 
 namespace sluice {
-
-/// Regions that touch, as indices in the scene's order.
-using Body = std::vector<std::size_t>;
-
-/// The regions of a scene by bodies: those whose bounds come within a spacing are in one.
-[[nodiscard]] std::vector<Body> bodies(const Scene& scene);
 
 /// Why the lattices of a body's regions do not fit its container, with the place, if they do not:
 /// a particle stands nearer to or farther from a wall or an obstacle that it touches than half a

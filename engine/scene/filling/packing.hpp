@@ -8,10 +8,12 @@
 namespace sluice {
 
 /// Points that stay where they are while others are packed beside them.
-struct FixedPoint {
-  Vec position = Vec::Zero();  ///< m
-  double volume = 1.0;         ///< in dx^2
+template <int Dim>
+struct FixedPointN {
+  VecN<Dim> position = VecN<Dim>::Zero();  ///< m
+  double volume = 1.0;                     ///< in dx^d
 };
+using FixedPoint = FixedPointN<kDim>;
 
 /// How a packing ended.
 struct PackingReport {
@@ -35,8 +37,9 @@ inline constexpr int kMaxPackingIterations = 400;
 /// whatever the scene's kernel: no function but the square root is needed, and every machine gives
 /// the same bits. Double precision, one thread, O(points) per iteration and at most
 /// kMaxPackingIterations of them; no point moves farther than dx/10 in one.
-[[nodiscard]] PackingReport pack(std::vector<Vec>& points, const std::vector<FixedPoint>& fixed,
-                                 double spacing);
+template <int Dim>
+[[nodiscard]] PackingReport pack(std::vector<VecN<Dim>>& points,
+                                 const std::vector<FixedPointN<Dim>>& fixed, double spacing);
 
 /// Distance beyond which a fixed point does nothing, m.
 [[nodiscard]] constexpr double packing_reach(double spacing) { return 3.0 * spacing; }

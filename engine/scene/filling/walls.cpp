@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
-#include "engine/scene/filling/cells.hpp"
 #include "engine/scene/filling/face_layers.hpp"
 #include "engine/scene/filling/lattice_fit.hpp"
+#include "engine/scene/filling/solid_walls.hpp"
 #include "engine/scene/geometry/geometry.hpp"
 
 namespace sluice {
@@ -16,9 +15,9 @@ namespace {
 /// Whether a place is solid but for one obstacle. A gate leaves.
 bool is_covered(const Scene& scene, std::size_t but, const Vec& point) {
   if (scene.tank) {
-    const Tank& tank = *scene.tank;
-    if (point.x() < 0.0 || point.x() > tank.width || point.y() < 0.0) return true;
-    if (!tank.open_top && point.y() > tank.height) return true;
+    const TankRoom tank = room_of(*scene.tank);
+    if (tank.aside(point) > 0.0 || point[kUpAxis] < 0.0) return true;
+    if (!tank.open_top && tank.over(point) > 0.0) return true;
   }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     if (i != but && contains(scene.obstacles[i], point)) return true;
@@ -28,42 +27,11 @@ bool is_covered(const Scene& scene, std::size_t but, const Vec& point) {
 
 std::optional<Polygon> straight_outline_of(const Shape& shape) {
   if (const auto* polygon = std::get_if<Polygon>(&shape)) return *polygon;
-  const auto* box = std::get_if<Rectangle>(&shape);
-  if (box == nullptr) return std::nullopt;
-  const Vec across(box->size.x(), 0.0);
-  return Polygon{{box->corner, box->corner + across, box->corner + box->size,
-                  box->corner + box->size - across}};
+  if (const auto* box = std::get_if<Rectangle>(&shape)) return as_polygon(*box);
+  return std::nullopt;
 }
 
-/// The layers of obstacle i, or nothing where its dummy particles lie in cells.
-using Layers = std::function<std::optional<std::vector<Vec>>(std::size_t i)>;
-
-std::vector<Vec> solid_walls(const std::vector<Shape>& solids, const Method& method,
-                             const Layers& by_faces) {
-  const std::int64_t layers = wall_layers(method);
-  std::vector<Vec> walls;
-  std::vector<std::function<bool(const Vec&)>> earlier;
-  const auto add = [&](const Vec& point) {
-    const bool taken = std::any_of(earlier.begin(), earlier.end(),
-                                   [&](const auto& holds) { return holds(point); });
-    if (!taken) walls.push_back(point);
-  };
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Shape& solid = solids[i];
-    if (const auto particles = by_faces(i)) {
-      for (const Vec& point : *particles) add(point);
-      earlier.emplace_back([&solid](const Vec& point) { return contains(solid, point); });
-      continue;
-    }
-    CellSet cells(solid, method.spacing, CellFit::stretched);
-    cells.for_each([&](const Vec& center, std::int64_t row, std::int64_t column) {
-      if (!cells.is_deep(row, column, layers)) add(center);
-    });
-    earlier.emplace_back(
-        [cells = std::move(cells)](const Vec& point) { return cells.covers(point); });
-  }
-  return walls;
-}
+WallLayers layers_of(const Method& method) { return {method.spacing, wall_layers(method)}; }
 
 }  // namespace
 
@@ -74,36 +42,11 @@ std::int64_t wall_layers(const Method& method) {
 }
 
 std::vector<Vec> tank_walls(const Tank& tank, const Method& method) {
-  const std::int64_t layers = wall_layers(method);
-  const std::int64_t columns = whole_cells(tank.width, method.spacing);
-  const std::int64_t rows = whole_cells(tank.height, method.spacing);
-
-  // Coordinate of row or column i: stretched cells inside the tank, whole spacings outside it.
-  const auto place = [&](std::int64_t i, std::int64_t cells, double length) {
-    const double center = static_cast<double>(i) + 0.5;
-    if (i < 0) return center * method.spacing;
-    if (i < cells) return center * length / static_cast<double>(cells);
-    return length + (center - static_cast<double>(cells)) * method.spacing;
-  };
-
-  std::vector<Vec> walls;
-  walls.reserve(static_cast<std::size_t>(count_tank_walls(tank, method)));
-  const std::int64_t top = tank.open_top ? rows : rows + layers;
-  for (std::int64_t row = -layers; row < top; ++row) {
-    for (std::int64_t column = -layers; column < columns + layers; ++column) {
-      if (row >= 0 && row < rows && column == 0) column = columns;  // over the inside
-      walls.emplace_back(place(column, columns, tank.width), place(row, rows, tank.height));
-    }
-  }
-  return walls;
+  return walls_around(room_of(tank), layers_of(method));
 }
 
 double count_tank_walls(const Tank& tank, const Method& method) {
-  const auto layers = static_cast<double>(wall_layers(method));
-  const double columns = std::max(1.0, std::round(tank.width / method.spacing));
-  const double rows = std::max(1.0, std::round(tank.height / method.spacing));
-  const double floor = layers * (columns + 2 * layers);
-  return floor * (tank.open_top ? 1 : 2) + 2 * layers * rows;
+  return count_walls_around(room_of(tank), layers_of(method));
 }
 
 Rectangle gate_body(const Gate& gate, const Method& method) {
@@ -129,13 +72,14 @@ std::vector<Vec> scene_walls(const Scene& scene) {
     return face_layers(*polygon, scene.method,
                        [&](const Vec& point) { return is_covered(scene, i, point); });
   };
-  const std::vector<Vec> solid = solid_walls(solids, scene.method, layers);
+  const std::vector<Vec> solid = walls_of_solids<kDim>(solids, layers_of(scene.method), layers);
   walls.insert(walls.end(), solid.begin(), solid.end());
   return walls;
 }
 
 std::vector<Vec> obstacle_walls(const std::vector<Shape>& obstacles, const Method& method) {
-  return solid_walls(obstacles, method, [](std::size_t) { return std::nullopt; });
+  return walls_of_solids<kDim>(obstacles, layers_of(method),
+                               [](std::size_t) { return std::nullopt; });
 }
 
 }  // namespace sluice

@@ -11,9 +11,7 @@ namespace sluice {
 /// three.
 [[nodiscard]] std::int64_t wall_layers(const Method& method);
 
-/// Dummy particles around a tank, m: layer k = 0, 1, ... lies (k + 1/2) dx outside the floor, both
-/// sides and, unless the top is open, the lid; corners included. Along a wall of length L the
-/// particles are L/n apart with n = round(L/dx), so that a whole number fits.
+/// walls_around() the tank.
 [[nodiscard]] std::vector<Vec> tank_walls(const Tank& tank, const Method& method);
 
 /// How many tank_walls() makes; a double, so that an absurd tank gives a large number.
@@ -30,9 +28,7 @@ namespace sluice {
 /// are face_layers(). No fluid is made.
 [[nodiscard]] std::vector<Vec> scene_walls(const Scene& scene);
 
-/// Dummy particles of obstacles, m: at the cell centres of each, from a cell size stretched to fit
-/// a rectangle and from dx otherwise, no deeper than wall_layers() cells below the surface. Where
-/// obstacles overlap, the first one's particles stand.
+/// walls_of_solids() of obstacles, all in cells.
 [[nodiscard]] std::vector<Vec> obstacle_walls(const std::vector<Shape>& obstacles,
                                               const Method& method);
 

@@ -5,6 +5,7 @@
 
 #include "engine/scene/filling/walls.hpp"
 #include "engine/scene/geometry/geometry.hpp"
+#include "engine/scene/geometry/tank_room.hpp"
 
 namespace sluice {
 namespace {
@@ -68,10 +69,9 @@ bool WaterLevels::blocked(const Vec& foot, double from, double to) const {
 
 bool WaterLevels::below_tank(const Vec& point) const {
   if (!scene_.tank) return false;
-  const bool inside_sides = point.x() > 0.0 && point.x() < scene_.tank->width;
-  const bool above = point.y() > scene_.tank->height;
-  if (above) return !scene_.tank->open_top;
-  return !inside_sides || point.y() < 0.0;
+  const TankRoom tank = room_of(*scene_.tank);
+  if (tank.over(point) > 0.0) return !tank.open_top;
+  return !tank.between_sides(point) || point[kUpAxis] < 0.0;
 }
 
 std::optional<WaterLevels::Climb> WaterLevels::climb(std::size_t region, double across) const {

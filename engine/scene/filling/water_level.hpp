@@ -8,7 +8,8 @@
 
 namespace sluice {
 
-/// Where the pressure of water at rest is zero, for each point of the fluid.
+/// Where the pressure of water at rest is zero, for each point of the fluid; in the plane, where
+/// columns of water stand side by side along one line.
 ///
 /// A region by itself has one level: its highest point against gravity f. Regions that touch
 /// (within a spacing, with no obstacle between) and move alike are one body: a point below another

@@ -15,7 +15,7 @@ double count_cells(const Shape& shape, double spacing) {
     const Vec cells = (rectangle->size / spacing).array().round().max(1.0);
     return cells.prod();
   }
-  return area(shape) / (spacing * spacing);
+  return measure(shape) / cell_measure<kDim>(spacing);
 }
 
 // The factor of both parts of eq. 18 that the paper gives for the force condition.

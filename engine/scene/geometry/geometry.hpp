@@ -1,47 +1,69 @@
 #pragma once
 
+#include <variant>
 #include <vector>
 
+#include "engine/scene/geometry/plane_shapes.hpp"
+#include "engine/scene/geometry/shapes.hpp"
 #include "engine/scene/model/scene.hpp"
 
 namespace sluice {
 
+// What every shape answers, of any number of dimensions: shapes.hpp has the bodies that are the
+// same in all, plane_shapes.hpp those of the plane. A shape that lacks one does not compile. The
+// first alternative of a variant says how many dimensions it is of.
+
 /// The smallest box around a shape, m.
-[[nodiscard]] Box bounds(const Shape& shape);
+template <class First, class... Rest>
+[[nodiscard]] BoxN<First::dimensions> bounds(const std::variant<First, Rest...>& shape) {
+  return std::visit([](const auto& s) { return bounds(s); }, shape);
+}
 
-/// The box with a margin on all sides, m; less on all sides where it is negative.
-[[nodiscard]] Box grown(Box box, double margin);
+/// What a shape fills, m^d: an area in the plane, of a polygon without self-intersections.
+template <class First, class... Rest>
+[[nodiscard]] double measure(const std::variant<First, Rest...>& shape) {
+  return std::visit([](const auto& s) { return measure(s); }, shape);
+}
 
-/// Whether two boxes have a point in common.
-[[nodiscard]] bool overlap(const Box& one, const Box& other);
+/// Length of the outline, m; in the plane.
+template <class First, class... Rest>
+[[nodiscard]] double perimeter(const std::variant<First, Rest...>& shape) {
+  return std::visit([](const auto& s) { return perimeter(s); }, shape);
+}
 
-/// Area, m^2; of a polygon without self-intersections.
-[[nodiscard]] double area(const Shape& shape);
+/// Whether a point lies in a shape. A point on the surface may go either way.
+template <class First, class... Rest>
+[[nodiscard]] bool contains(const std::variant<First, Rest...>& shape,
+                            const VecN<First::dimensions>& point) {
+  return std::visit([&](const auto& s) { return contains(s, point); }, shape);
+}
 
-/// Length of the outline, m; of an ellipse by Ramanujan's first formula, which is within 1e-4 to an
-/// axis ratio of 5 and within 1 % beyond.
-[[nodiscard]] double perimeter(const Shape& shape);
-
-/// Whether a point lies in a shape. A point on the outline may go either way.
-[[nodiscard]] bool contains(const Shape& shape, const Vec& point);
-
-/// Distance from the outline, negative inside, m. Of an ellipse to first order in the distance
-/// over its smaller radius of curvature.
-[[nodiscard]] double signed_distance(const Shape& shape, const Vec& point);
+/// Distance from the surface, negative inside, m. Of an ellipsoid to first order in the distance
+/// over its smallest radius of curvature.
+template <class First, class... Rest>
+[[nodiscard]] double signed_distance(const std::variant<First, Rest...>& shape,
+                                     const VecN<First::dimensions>& point) {
+  return std::visit([&](const auto& s) { return signed_distance(s, point); }, shape);
+}
 
 /// Largest value of direction . x over a shape.
-[[nodiscard]] double farthest_along(const Shape& shape, const Vec& direction);
+template <class First, class... Rest>
+[[nodiscard]] double farthest_along(const std::variant<First, Rest...>& shape,
+                                    const VecN<First::dimensions>& direction) {
+  return std::visit([&](const auto& s) { return farthest_along(s, direction); }, shape);
+}
 
 /// Where the line origin + t direction enters and leaves a shape: values of t in pairs, increasing.
 /// Along an edge it goes as on one side of it.
-[[nodiscard]] std::vector<double> chords(const Shape& shape, const Vec& origin,
-                                         const Vec& direction);
-
-/// Whether no two edges of a polygon cross or overlap, O(n^2).
-[[nodiscard]] bool is_simple(const Polygon& polygon);
+template <class First, class... Rest>
+[[nodiscard]] std::vector<double> chords(const std::variant<First, Rest...>& shape,
+                                         const VecN<First::dimensions>& origin,
+                                         const VecN<First::dimensions>& direction) {
+  return std::visit([&](const auto& s) { return chords(s, origin, direction); }, shape);
+}
 
 /// Velocity at the start of a particle of the region at `point`, m/s. The middle is that of the
-/// shape's bounds.
+/// shape's bounds. Of the plane: what strains and turns does so in it.
 [[nodiscard]] Vec velocity_at(const FluidRegion& region, const Vec& point);
 /// No particle of the region is faster at the start, m/s.
 [[nodiscard]] double greatest_speed(const FluidRegion& region);

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <vector>
 
+#include "engine/scene/geometry/directions.hpp"
 #include "engine/scene/geometry/geometry.hpp"
 #include "engine/scene/geometry/solids.hpp"
-#include "engine/scene/geometry/thin_solids.hpp"
+#include "engine/scene/geometry/too_thin.hpp"
 
 namespace sluice {
 namespace {
@@ -21,15 +21,15 @@ constexpr double kStepsPerSpacing = 8;
 
 bool is_deep(const GateMotion& gate, const Vec& place, double time, double depth) {
   Box standing = gate.place;
-  standing.min.y() += gate.speed * time;
+  standing.min[kUpAxis] += gate.speed * time;
   return grown(standing, -depth).contains(place);
 }
 
-void add_tank(const Tank& tank, double depth, Method& method) {
-  method.room = {Vec::Constant(-depth), Vec(tank.width, tank.height).array() + depth};
+void add_tank(const TankRoom& tank, double depth, Method& method) {
+  method.room = {Vec::Constant(-depth), tank.size.array() + depth};
   if (!tank.open_top) return;
-  method.room.max.y() = std::numeric_limits<double>::infinity();
-  method.walls_reach = tank.height - depth;
+  method.room.max[kUpAxis] = std::numeric_limits<double>::infinity();
+  method.walls_reach = tank.size[kUpAxis] - depth;
 }
 
 /// The obstacles, with all that is needed to say who is deep in them.
@@ -37,8 +37,9 @@ class Obstacles {
  public:
   explicit Obstacles(const Scene& scene)
       : scene_(std::make_shared<const Scene>(scene)),
-        solids_(*scene_),
-        spacing_(scene.method.spacing) {
+        solids_(solids_of(*scene_)),
+        spacing_(scene.method.spacing),
+        ways_(half_of_directions<kDim>(kWays)) {
     for (const Shape& shape : scene_->obstacles) boxes_.push_back(bounds(shape));
   }
 
@@ -64,9 +65,7 @@ class Obstacles {
     double least = thick;
     Vec one = place;
     Vec other = place;
-    for (int k = 0; k < kWays; ++k) {
-      const double angle = std::numbers::pi * k / kWays;
-      const Vec way(std::cos(angle), std::sin(angle));
+    for (const Vec& way : ways_) {
       const auto to_open = [&](const Vec& direction) {
         const double step = spacing_ / kStepsPerSpacing;
         return solids_.reach(place, direction, least, step).value_or(least);
@@ -85,6 +84,7 @@ class Obstacles {
   std::shared_ptr<const Scene> scene_;  ///< that the solids are of
   Solids solids_;
   double spacing_;
+  std::vector<Vec> ways_;  ///< in which a thickness is sought
   std::vector<Box> boxes_;
 };
 
@@ -97,7 +97,7 @@ double allowed_depth(double thickness, double spacing) {
 Method method_with_solids(const Scene& scene) {
   Method method = scene.method;
   const double depth = method.spacing;
-  if (scene.tank) add_tank(*scene.tank, depth, method);
+  if (scene.tank) add_tank(room_of(*scene.tank), depth, method);
   if (scene.obstacles.empty() && !method.gate) return method;
   Scene solid;
   solid.tank = scene.tank;

@@ -9,6 +9,8 @@
 namespace sluice {
 namespace {
 
+using Point = VecN<2>;
+
 constexpr double kOffOutline = 1e-3;  // of the spacing: a point on the side of the outline
 constexpr std::size_t kStepsAcross =
     64;                          // of a search; nothing thinner than a part of it is missed
@@ -22,7 +24,7 @@ constexpr double kAsNarrow = 1.01;
 /// A narrow place and the way across.
 struct Crossing {
   Narrow narrow;
-  Vec way = Vec::Zero();
+  Point way = Point::Zero();
 };
 using Run = std::vector<Crossing>;
 
@@ -47,12 +49,12 @@ std::optional<Narrow> narrow_body(Run run) {
 
 /// Whether one sees far from a place in two directions at least 120 degrees apart: out of a corner
 /// one sees in fewer.
-bool sees_both_ways(const Solids& solids, const Vec& place, const Vec& along, double far) {
+bool sees_both_ways(const SolidsN<2>& solids, const Point& place, const Point& along, double far) {
   std::vector<int> free;
   for (int k = 0; k < kSights; ++k) {
     const double angle = 2 * std::numbers::pi * k / kSights;
-    const Vec across(-along.y(), along.x());
-    const Vec way = std::cos(angle) * along + std::sin(angle) * across;
+    const Point across(-along.y(), along.x());
+    const Point way = std::cos(angle) * along + std::sin(angle) * across;
     if (!solids.reach(place, way, far, far / kStepsAcross)) free.push_back(k);
   }
   for (const int a : free) {
@@ -65,7 +67,7 @@ bool sees_both_ways(const Solids& solids, const Vec& place, const Vec& along, do
 }
 
 /// The narrowest place of a gap, in the middle of those that are as narrow, if it is a slit.
-std::optional<Narrow> slit(const Solids& solids, const Run& run, double spacing) {
+std::optional<Narrow> slit(const SolidsN<2>& solids, const Run& run, double spacing) {
   const auto least = std::min_element(
       run.begin(), run.end(),
       [](const Crossing& a, const Crossing& b) { return a.narrow.width < b.narrow.width; });
@@ -75,8 +77,8 @@ std::optional<Narrow> slit(const Solids& solids, const Run& run, double spacing)
     return each.narrow.width <= kAsNarrow * least->narrow.width;
   });
   const Crossing& middle = alike[alike.size() / 2];
-  const Vec inside = middle.narrow.place + 0.5 * middle.narrow.width * middle.way;
-  const Vec along(middle.way.y(), -middle.way.x());
+  const Point inside = middle.narrow.place + 0.5 * middle.narrow.width * middle.way;
+  const Point along(middle.way.y(), -middle.way.x());
   if (!sees_both_ways(solids, inside, along, kSight * spacing)) return std::nullopt;
   return Narrow{least->narrow.width, middle.narrow.place};
 }
@@ -101,18 +103,19 @@ std::vector<Run> runs_of(const std::vector<std::optional<Crossing>>& widths) {
 
 }  // namespace
 
-std::optional<Narrow> narrow_part(const Solids& solids, const std::vector<OutlinePoint>& outline,
-                                  Across across, double most, double spacing) {
+std::optional<Narrow> narrow_part(const SolidsN<2>& solids,
+                                  const std::vector<OutlinePoint>& outline, Across across,
+                                  double most, double spacing) {
   const double off = kOffOutline * spacing;
   const bool solid = across == Across::solid;
   std::vector<std::optional<Crossing>> widths;
   for (const OutlinePoint& point : outline) {
     widths.emplace_back();
-    const Vec before = point.place + off * point.out;
-    const Vec behind = point.place - off * point.out;
+    const Point before = point.place + off * point.out;
+    const Point behind = point.place - off * point.out;
     // Covered by another solid, or by the outline itself where it turns sharply.
     if (solids.holds(before) || !solids.holds(behind)) continue;
-    const Vec way = solid ? Vec(-point.out) : point.out;
+    const Point way = solid ? Point(-point.out) : point.out;
     const auto width = solids.reach(solid ? behind : before, way, most - off, most / kStepsAcross);
     if (width) widths.back() = Crossing{{*width + off, point.place}, way};
   }

@@ -1,24 +1,25 @@
 #include "engine/scene/geometry/open_fraction.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "engine/scene/geometry/directions.hpp"
 #include "engine/scene/geometry/geometry.hpp"
+#include "engine/scene/geometry/tank_room.hpp"
 #include "engine/sph/method/kernel.hpp"
 
 namespace sluice {
 namespace {
 
-// Rings and rays cut a straight wall at another place each; a square grid would meet it all along a
-// row. No ray lies on an axis, and a quarter of them in each quadrant: a corner is exact.
-constexpr int kRings = 60;
+// Spheres and rays cut a straight wall at another place each; a square grid would meet it all along
+// a row. In the plane no ray lies on an axis, and a quarter of them in each quadrant: a corner is
+// exact.
+constexpr int kSpheres = 60;
 constexpr int kRays = 180;
 
 /// Above the rim of an open tank all is open.
-bool in_wall(const Tank& tank, const Vec& point) {
-  if (point.y() >= tank.height) return !tank.open_top;
-  return point.x() <= 0.0 || point.x() >= tank.width || point.y() <= 0.0;
+bool in_wall(const TankRoom& tank, const Vec& point) {
+  if (tank.over(point) >= 0.0) return !tank.open_top;
+  return !tank.between_sides(point) || point[kUpAxis] <= 0.0;
 }
 
 /// The obstacles that come within `reach` of a point, by their bounds.
@@ -36,17 +37,17 @@ OpenFraction::OpenFraction(const Scene& scene, const Vec& point, double h)
     : gate_(scene.method.gate) {
   const std::vector<Shape> solids = obstacles_near(scene, point, scene.method.support_ratio() * h);
   const auto is_open = [&](const Vec& place) {
-    return (!scene.tank || !in_wall(*scene.tank, place)) &&
+    return (!scene.tank || !in_wall(room_of(*scene.tank), place)) &&
            std::none_of(solids.begin(), solids.end(),
                         [&](const Shape& solid) { return contains(solid, place); });
   };
+  const std::vector<Vec> rays = directions<kDim>(kRays, 0.5);
   double whole = 0.0;
-  for (int ring = 0; ring < kRings; ++ring) {
-    const double r = scene.method.support_ratio() * (ring + 0.5) / kRings;
-    const double weight = r * kernel_value(scene.method.kernel, r * r);
-    for (int ray = 0; ray < kRays; ++ray) {
-      const double angle = 2.0 * std::numbers::pi * (ray + 0.5) / kRays;
-      const Vec place = point + h * r * Vec(std::cos(angle), std::sin(angle));
+  for (int sphere = 0; sphere < kSpheres; ++sphere) {
+    const double r = scene.method.support_ratio() * (sphere + 0.5) / kSpheres;
+    const double weight = times_power<kDim - 1>(1.0, r) * kernel_value(scene.method.kernel, r * r);
+    for (const Vec& ray : rays) {
+      const Vec place = point + h * r * ray;
       whole += weight;
       if (!is_open(place)) continue;
       if (gate_ && gate_->place.contains(place)) {

@@ -11,7 +11,7 @@ namespace sluice {
 /// rim, and in no obstacle. A half on a wall, a quarter in a corner, 1 far from both.
 class OpenFraction {
  public:
-  /// `h` is the smoothing length of the sum, m. The kernel's integral is taken over rings and
+  /// `h` is the smoothing length of the sum, m. The kernel's integral is taken over spheres and
   /// rays, to half a percent, and whatever dummy particles stand there.
   OpenFraction(const Scene& scene, const Vec& point, double h);
 

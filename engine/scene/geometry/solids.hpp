@@ -1,51 +1,54 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "engine/scene/geometry/tank_room.hpp"
 #include "engine/scene/model/scene.hpp"
 
 namespace sluice {
 
 /// All that is solid in a scene but a gate: the obstacles and, around the tank, the rest of the
 /// world but the air above an open top.
-class Solids {
+template <int Dim>
+class SolidsN {
  public:
-  explicit Solids(const Scene& scene);
+  using Point = VecN<Dim>;
 
-  [[nodiscard]] bool holds(const Vec& point) const;
+  /// `obstacles` must outlive this; `spacing` in m.
+  SolidsN(const std::vector<ShapeN<Dim>>& obstacles, std::optional<TankRoomN<Dim>> tank,
+          double spacing);
+
+  [[nodiscard]] bool holds(const Point& point) const;
   /// Whether a point is in the open and at least this far from all that is solid, m.
-  [[nodiscard]] bool leaves_room(const Vec& point, double margin) const;
+  [[nodiscard]] bool leaves_room(const Point& point, double margin) const;
   /// How far a point is from the open, m: 0 in the open, also where one solid lies against another;
   /// there it is sought up to `most` in steps of `most`/32, and all that is deeper counts as that.
-  [[nodiscard]] double depth(const Vec& point, double most) const;
+  [[nodiscard]] double depth(const Point& point, double most) const;
   /// The same of the walls around the tank alone.
-  [[nodiscard]] double depth_in_walls(const Vec& point) const;
+  [[nodiscard]] double depth_in_walls(const Point& point) const;
   /// How far one gets from a point in the open or in a solid before that changes, m; nothing when
   /// it is `most` or more. `step` is the length that nothing shorter than is found.
-  [[nodiscard]] std::optional<double> reach(const Vec& from, const Vec& direction, double most,
+  [[nodiscard]] std::optional<double> reach(const Point& from, const Point& direction, double most,
                                             double step) const;
 
  private:
   struct Body {
-    const Shape* shape;
-    Box box;
+    const ShapeN<Dim>* shape;
+    BoxN<Dim> box;
   };
 
   std::vector<Body> bodies_;
-  std::optional<Tank> tank_;
-  double slack_;  ///< m; gaps of rounding are none
+  std::optional<TankRoomN<Dim>> tank_;
+  double slack_;             ///< m; gaps of rounding are none
+  std::vector<Point> ways_;  ///< in which a depth is sought
 };
 
-/// A place on an outline and the direction out of the shape there.
-struct OutlinePoint {
-  Vec place = Vec::Zero();
-  Vec out = Vec::Zero();
-};
+using Solids = SolidsN<kDim>;
 
-/// Points along an outline in order, equally far apart: about `step`, but at most about `most` of
-/// them, and a few on each side of a polygon, also near its corners. None is a corner.
-[[nodiscard]] std::vector<OutlinePoint> outline(const Shape& shape, double step, std::size_t most);
+/// The solids of a scene, which must outlive them.
+[[nodiscard]] inline Solids solids_of(const Scene& scene) {
+  return {scene.obstacles, room_of(scene), scene.method.spacing};
+}
 
 }  // namespace sluice

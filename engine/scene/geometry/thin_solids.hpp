@@ -4,17 +4,12 @@
 #include <vector>
 
 #include "engine/scene/geometry/narrow_part.hpp"
+#include "engine/scene/geometry/too_thin.hpp"
 
 namespace sluice {
 
-/// A solid that is thinner lets fluid through, in spacings. Measured with both schemes at 15 to 60
-/// particles of water in front of a plate, at rest and at an impact, upright and at angles from 15
-/// to 45 degrees: of 1500 particles up to 227 were behind one of 1.75 spacings, none behind any of
-/// 2, 2.25, 2.5, 3 or 4. A plate of two spacings holds two layers of dummy particles whatever its
-/// angle, and no pair across it is nearer than the two.
-inline constexpr double kThinnestSolid = 2.0;
-
-/// The thinnest part near an outline that would let fluid through, for particles `spacing` apart.
+/// The thinnest part near an outline in the plane that would let fluid through, for particles
+/// `spacing` apart.
 ///
 /// Fluid is where its particles have room, half a spacing from all solids. Two such places lie on
 /// two sides of a solid that is too thin when they are less than a spacing plus two of thickness
@@ -26,13 +21,8 @@ inline constexpr double kThinnestSolid = 2.0;
 ///
 /// The place is in the middle of the solid; the width is less than two spacings, and below zero
 /// where particles on both sides come nearer to one another than in the open.
-[[nodiscard]] std::optional<Narrow> thin_part(const Solids& solids,
+[[nodiscard]] std::optional<Narrow> thin_part(const SolidsN<2>& solids,
                                               const std::vector<OutlinePoint>& outline,
                                               double spacing);
-
-/// The same rule for what is solid between two given places in the open, half a spacing from it:
-/// whether the way from one to the other is long for its thickness, m.
-[[nodiscard]] bool keeps_apart(const Solids& solids, const Vec& one, const Vec& other,
-                               double thickness, double spacing);
 
 }  // namespace sluice

@@ -4,33 +4,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "engine/scene/model/scheme.hpp"
+#include "engine/scene/model/shapes.hpp"
 #include "engine/space/vec.hpp"
 #include "engine/sph/method/method.hpp"
 #include "sluice/experiment_words.hpp"
 
 namespace sluice {
-
-// Shapes. Lengths in m, x to the right, y up.
-struct Rectangle {
-  Vec corner = Vec::Zero();  ///< lower left
-  Vec size = Vec::Zero();
-};
-struct Circle {
-  Vec center = Vec::Zero();
-  double radius = 0.0;
-};
-struct Ellipse {
-  Vec center = Vec::Zero();
-  Vec semi_axes = Vec::Zero();
-};
-struct Polygon {
-  std::vector<Vec> points;  ///< simple, not closed by repetition
-};
-using Shape = std::variant<Rectangle, Circle, Ellipse, Polygon>;
 
 /// A box of solid walls around [0, width] x [0, height], with a lid or without.
 struct Tank {

@@ -4,17 +4,19 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/space/space_traits.hpp"
 #include "engine/sph/method/method.hpp"
 
 namespace sluice {
 
-/// Smoothing functions in two dimensions, dimensionless: W = value(R^2) / h^2 and grad W_ij =
-/// -slope(R^2) x_ij / h^4, both zero beyond `support` smoothing lengths. The pair sums use vector
-/// versions of the same shapes.
-struct TruncatedGaussian {
+/// Smoothing functions in d dimensions, dimensionless: W = value(R^2) / h^d and grad W_ij =
+/// -slope(R^2) x_ij / h^(d+2), both zero beyond `support` smoothing lengths. The pair sums use
+/// vector versions of the same shapes.
+template <int Dim>
+struct TruncatedGaussianN {
   static constexpr double support = 3.0;
-  static constexpr double value_scale = std::numbers::inv_pi;
-  static constexpr double slope_scale = 2.0 * std::numbers::inv_pi;
+  static constexpr double value_scale = SpaceTraits<Dim>::gaussian_norm;
+  static constexpr double slope_scale = 2.0 * value_scale;
 
   /// eq. 6. Cut, not renormalised: the integral over the plane is 1 - e^-9.
   [[nodiscard]] static double value(double r_sq) {
@@ -23,11 +25,14 @@ struct TruncatedGaussian {
   [[nodiscard]] static double slope(double r_sq) { return 2.0 * value(r_sq); }
 };
 
-/// Wendland C2 (Wendland 1995), normalised for the plane.
-struct WendlandC2 {
+/// Wendland C2 (Wendland 1995).
+template <int Dim>
+struct WendlandC2N {
   static constexpr double support = 2.0;
-  static constexpr double value_scale = 7.0 / 4.0 * std::numbers::inv_pi;
-  static constexpr double slope_scale = 35.0 / 4.0 * std::numbers::inv_pi;
+  static constexpr double value_scale =
+      SpaceTraits<Dim>::pi_times_wendland_c2_norm * std::numbers::inv_pi;
+  static constexpr double slope_scale =
+      5.0 * SpaceTraits<Dim>::pi_times_wendland_c2_norm * std::numbers::inv_pi;
 
   [[nodiscard]] static double value(double r_sq) {
     const double r = std::sqrt(r_sq);
@@ -39,6 +44,9 @@ struct WendlandC2 {
     return slope_scale * rest * rest * rest;
   }
 };
+
+using TruncatedGaussian = TruncatedGaussianN<kDim>;
+using WendlandC2 = WendlandC2N<kDim>;
 
 /// value(R^2) of the kernel that a method names.
 [[nodiscard]] inline double kernel_value(KernelKind kind, double r_sq) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "engine/space/space_traits.hpp"
 #include "engine/space/vec.hpp"
 
 namespace sluice {
@@ -14,7 +15,7 @@ namespace sluice {
 /// Smoothing function W(R, h), R = |x_ij| / h.
 enum class KernelKind {
   truncated_gaussian,  ///< eq. 6: pi^(-d/2) h^-d exp(-R^2), R < 3
-  wendland_c2,         ///< 7/(4 pi h^2) (1 - R/2)^4 (2R + 1), R < 2 (d = 2)
+  wendland_c2,         ///< norm h^-d (1 - R/2)^4 (2R + 1), R < 2; 7/(4 pi) in the plane
 };
 
 /// Time integration scheme.
@@ -158,7 +159,9 @@ struct Method {
     return domain.contains(p) && !over && !in_wall;
   }
   /// Mass of every particle, fluid and dummy, kg per metre of depth: rho_0 dx^d.
-  [[nodiscard]] double particle_mass() const { return reference_density * spacing * spacing; }
+  [[nodiscard]] double particle_mass() const {
+    return times_power<kDim>(reference_density, spacing);
+  }
   /// 2 nu/(c h): the physical viscosity in the units of the sums; 0 without it.
   [[nodiscard]] double scaled_two_nu() const {
     return laminar_viscosity ? 2.0 * laminar_viscosity->nu / (sound_speed * smoothing_length) : 0.0;

@@ -2,77 +2,98 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "engine/scene/filling/packing-inl.hpp"
+#include "tests/space/dimensions.hpp"
 
 namespace sluice {
 namespace {
 
-constexpr double kDx = 0.01;
+constexpr double kApart = 0.01;
 
-/// A ring of fixed lattice points, three deep, around a square of `side` spacings.
-std::vector<FixedPoint> ring(int side) {
-  std::vector<FixedPoint> fixed;
-  for (int row = -3; row < side + 3; ++row) {
-    for (int column = -3; column < side + 3; ++column) {
-      const bool inside = row >= 0 && row < side && column >= 0 && column < side;
-      if (!inside) fixed.push_back({kDx * Vec(column + 0.5, row + 0.5), 1.0});
-    }
-  }
+template <int Dim>
+VecN<Dim> middle_of(const CellN<Dim>& cell) {
+  return kApart * (as_vector<Dim>(cell).array() + 0.5).matrix();
+}
+
+/// A shell of fixed lattice points, three deep, around a cube of `side` spacings.
+template <int Dim>
+std::vector<FixedPointN<Dim>> shell(int side) {
+  std::vector<FixedPointN<Dim>> fixed;
+  for_each_cell<Dim>(shifted<Dim>({}, -3), shifted<Dim>({}, side + 2), [&](const auto& cell) {
+    const bool inside =
+        std::all_of(cell.begin(), cell.end(), [&](std::int64_t k) { return k >= 0 && k < side; });
+    if (!inside) fixed.push_back({middle_of<Dim>(cell), 1.0});
+  });
   return fixed;
 }
 
-std::vector<Vec> lattice(int side, double off) {
-  std::vector<Vec> points;
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      const double x = off * std::sin(12.9 * row + 78.2 * column);
-      const double y = off * std::sin(39.3 * row + 11.1 * column);
-      points.push_back(kDx * Vec(column + 0.5 + x, row + 0.5 + y));
+/// The lattice in that cube, each point displaced by up to `off` spacings along each axis.
+template <int Dim>
+std::vector<VecN<Dim>> lattice(int side, double off) {
+  std::vector<VecN<Dim>> points;
+  for_each_cell<Dim>({}, shifted<Dim>({}, side - 1), [&](const auto& cell) {
+    const VecN<Dim> at = as_vector<Dim>(cell);
+    VecN<Dim> moved = middle_of<Dim>(cell);
+    for (int axis = 0; axis < Dim; ++axis) {
+      moved[axis] += kApart * off * std::sin(12.9 * at.sum() + 78.2 * at[axis] + axis);
     }
-  }
+    points.push_back(moved);
+  });
   return points;
 }
 
-TEST(Packing, LeavesALatticeWhereItIs) {
-  std::vector<Vec> points = lattice(10, 0.0);
-  const PackingReport report = pack(points, ring(10), kDx);
+template <class Dimension>
+class PackingIn : public ::testing::Test {};
+TYPED_TEST_SUITE(PackingIn, testing::Dimensions);
+
+TYPED_TEST(PackingIn, LeavesALatticeWhereItIs) {
+  constexpr int kD = TypeParam::value;
+  const std::vector<VecN<kD>> before = lattice<kD>(6, 0.0);
+  std::vector<VecN<kD>> points = before;
+  const PackingReport report = pack(points, shell<kD>(6), kApart);
   EXPECT_EQ(report.iterations, 1);
-  EXPECT_EQ(report.particles, 100U);
+  EXPECT_EQ(report.particles, kD == 2 ? 36U : 216U);
   EXPECT_LT(report.residual, 1e-12);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_LT((points[i] - lattice(10, 0.0)[i]).norm(), 1e-9 * kDx);
+    EXPECT_LT((points[i] - before[i]).norm(), 1e-9 * kApart);
   }
 }
 
-TEST(Packing, MakesTheConcentrationUniform) {
-  std::vector<Vec> points = lattice(12, 0.3);
-  const PackingReport report = pack(points, ring(12), kDx);
+TYPED_TEST(PackingIn, MakesTheConcentrationUniform) {
+  constexpr int kD = TypeParam::value;
+  std::vector<VecN<kD>> points = lattice<kD>(6, 0.3);
+  const PackingReport report = pack(points, shell<kD>(6), kApart);
   EXPECT_LE(report.residual, 6e-4);
   EXPECT_LT(report.iterations, kMaxPackingIterations);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) EXPECT_GT((points[i] - points[j]).norm(), 0.6 * kDx);
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_GT((points[i] - points[j]).norm(), 0.6 * kApart);
+    }
   }
 }
 
 TEST(Packing, DoesNotKnowWhereTheOriginIs) {
-  std::vector<Vec> here = lattice(8, 0.3), there = here;
-  std::vector<FixedPoint> fixed = ring(8);
-  (void)pack(here, fixed, kDx);
+  std::vector<Vec> here = lattice<2>(8, 0.3), there = here;
+  std::vector<FixedPoint> fixed = shell<2>(8);
+  (void)pack(here, fixed, kApart);
   const Vec far(1000.0, -2000.0);
   for (Vec& point : there) point += far;
   for (FixedPoint& each : fixed) each.position += far;
-  (void)pack(there, fixed, kDx);
+  (void)pack(there, fixed, kApart);
   for (std::size_t i = 0; i < here.size(); ++i) {
-    EXPECT_LT((there[i] - far - here[i]).norm(), 1e-4 * kDx);
+    EXPECT_LT((there[i] - far - here[i]).norm(), 1e-4 * kApart);
   }
 }
 
 TEST(Packing, EndsAtItsMostIterationsWhateverItIsGiven) {
   std::vector<Vec> one_place(40, Vec(0.3, 0.2));
-  EXPECT_EQ(pack(one_place, {}, kDx).particles, 40U);
+  EXPECT_EQ(pack(one_place, {}, kApart).particles, 40U);
   std::vector<Vec> none;
-  EXPECT_EQ(pack(none, ring(3), kDx).iterations, 0);
+  EXPECT_EQ(pack(none, shell<2>(3), kApart).iterations, 0);
 }
 
 }  // namespace

@@ -16,10 +16,10 @@ Polygon square() { return {{Vec(0, 0), Vec(2, 0), Vec(2, 2), Vec(0, 2)}}; }
 Polygon corner() { return {{Vec(0, 0), Vec(2, 0), Vec(2, 1), Vec(1, 1), Vec(1, 2), Vec(0, 2)}}; }
 
 TEST(Geometry, AreasAreThoseOfTheTextbook) {
-  EXPECT_DOUBLE_EQ(area(Rectangle{Vec(1, 1), Vec(2, 3)}), 6);
-  EXPECT_DOUBLE_EQ(area(Circle{Vec(5, 5), 2}), 4 * kPi);
-  EXPECT_DOUBLE_EQ(area(Ellipse{Vec(5, 5), Vec(2, 3)}), 6 * kPi);
-  EXPECT_DOUBLE_EQ(area(corner()), 3);
+  EXPECT_DOUBLE_EQ(measure(Rectangle{Vec(1, 1), Vec(2, 3)}), 6);
+  EXPECT_DOUBLE_EQ(measure(Circle{Vec(5, 5), 2}), 4 * kPi);
+  EXPECT_DOUBLE_EQ(measure(Ellipse{Vec(5, 5), Vec(2, 3)}), 6 * kPi);
+  EXPECT_DOUBLE_EQ(measure(corner()), 3);
 }
 
 TEST(Geometry, OutlinesAreThoseOfTheTextbook) {

@@ -8,15 +8,16 @@
 namespace sluice {
 namespace {
 
-/// Integral over the plane, by the midpoint rule in R: 2 pi R W dR.
-template <class Kernel>
-double plane_integral() {
+/// Integral over space, by the midpoint rule in R: S R^(d-1) W dR, S = d times the unit ball.
+template <int Dim, class Kernel>
+double integral() {
   constexpr int kSlices = 200000;
   const double width = Kernel::support / kSlices;
   double sum = 0.0;
   for (int k = 0; k < kSlices; ++k) {
     const double r = (k + 0.5) * width;
-    sum += 2.0 * std::numbers::pi * r * Kernel::value(r * r) * width;
+    const double sphere = Dim * SpaceTraits<Dim>::unit_ball * times_power<Dim - 1>(1.0, r);
+    sum += sphere * Kernel::value(r * r) * width;
   }
   return sum;
 }
@@ -33,14 +34,22 @@ void expect_slope_is_the_derivative() {
 }
 
 TEST(Kernels, TheTruncatedGaussianIntegratesToOneLessWhatIsCutOff) {
-  EXPECT_NEAR(plane_integral<TruncatedGaussian>(), 1.0 - std::exp(-9.0), 1e-10);
+  EXPECT_NEAR((integral<2, TruncatedGaussianN<2>>()), 1.0 - std::exp(-9.0), 1e-10);
+  // The part of a normal distribution in space beyond R: erfc(R) + 2 R exp(-R^2) / sqrt(pi).
+  const double cut = std::erfc(3.0) + 6.0 * std::exp(-9.0) * std::numbers::inv_sqrtpi;
+  EXPECT_NEAR((integral<3, TruncatedGaussianN<3>>()), 1.0 - cut, 1e-10);
 }
 
-TEST(Kernels, WendlandC2IntegratesToOne) { EXPECT_NEAR(plane_integral<WendlandC2>(), 1.0, 1e-10); }
+TEST(Kernels, WendlandC2IntegratesToOne) {
+  EXPECT_NEAR((integral<2, WendlandC2N<2>>()), 1.0, 1e-10);
+  EXPECT_NEAR((integral<3, WendlandC2N<3>>()), 1.0, 1e-10);
+}
 
 TEST(Kernels, TheSlopeIsTheDerivativeOfTheValue) {
-  expect_slope_is_the_derivative<TruncatedGaussian>();
-  expect_slope_is_the_derivative<WendlandC2>();
+  expect_slope_is_the_derivative<TruncatedGaussianN<2>>();
+  expect_slope_is_the_derivative<TruncatedGaussianN<3>>();
+  expect_slope_is_the_derivative<WendlandC2N<2>>();
+  expect_slope_is_the_derivative<WendlandC2N<3>>();
 }
 
 TEST(Kernels, TheSlopeIsFiniteAtTheCentre) {

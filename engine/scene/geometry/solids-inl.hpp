@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+
+#include "engine/scene/geometry/directions.hpp"
+#include "engine/scene/geometry/geometry.hpp"
+#include "engine/scene/geometry/solids.hpp"
+
+namespace sluice {
+namespace solids {
+
+inline constexpr double kTiny = 1e-9;  // of the spacing: gaps and depths of rounding
+inline constexpr int kDirections = 32;
+
+/// Whether a point is nearer to a shape than `distance` > 0, or in it.
+template <class AnyShape, class Point>
+bool is_nearer(const AnyShape& shape, const Point& point, double distance) {
+  return signed_distance(shape, point) < distance;
+}
+/// The first order of an ellipse's distance is too coarse where its ends are sharp.
+inline bool is_nearer(const Ellipse& shape, const VecN<2>& point, double distance) {
+  const double first_order = signed_distance(shape, point);
+  if (first_order <= 0.0) return first_order < distance;
+  return distance_from_outside(shape, point) < distance;
+}
+
+}  // namespace solids
+
+template <int Dim>
+SolidsN<Dim>::SolidsN(const std::vector<ShapeN<Dim>>& obstacles, std::optional<TankRoomN<Dim>> tank,
+                      double spacing)
+    : tank_(tank), slack_(solids::kTiny * spacing), ways_(directions<Dim>(solids::kDirections)) {
+  for (const ShapeN<Dim>& shape : obstacles) {
+    bodies_.push_back({&shape, grown(bounds(shape), slack_)});
+  }
+}
+
+template <int Dim>
+double SolidsN<Dim>::depth_in_walls(const Point& p) const {
+  return tank_ ? tank_->depth_in_walls(p) : 0.0;
+}
+
+template <int Dim>
+bool SolidsN<Dim>::holds(const Point& p) const {
+  if (depth_in_walls(p) > 0.0) return true;
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+    return body.box.contains(p) &&
+           (contains(*body.shape, p) || signed_distance(*body.shape, p) <= slack_);
+  });
+}
+
+template <int Dim>
+bool SolidsN<Dim>::leaves_room(const Point& p, double margin) const {
+  const double enough = margin - slack_;
+  if (tank_ && !tank_->leaves_room(p, enough)) return false;
+  return std::none_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+    const Point beyond = (body.box.min - p).cwiseMax(p - body.box.max);
+    if (!(beyond.maxCoeff() < enough)) return false;
+    return std::visit([&](const auto& s) { return solids::is_nearer(s, p, enough); }, *body.shape);
+  });
+}
+
+template <int Dim>
+double SolidsN<Dim>::depth(const Point& p, double most) const {
+  double deepest = depth_in_walls(p);
+  for (const Body& body : bodies_) {
+    if (body.box.contains(p)) deepest = std::max(deepest, -signed_distance(*body.shape, p));
+  }
+  if (deepest >= most || !holds(p)) return deepest;
+  double nearest = most;
+  for (const Point& way : ways_) {
+    if (nearest <= deepest) break;
+    nearest = reach(p, way, nearest, most / 32).value_or(nearest);
+  }
+  return std::max(deepest, nearest);
+}
+
+template <int Dim>
+std::optional<double> SolidsN<Dim>::reach(const Point& from, const Point& direction, double most,
+                                          double step) const {
+  const bool inside = holds(from);
+  double near = 0.0;
+  for (double far = step; near < most; near = far, far += step) {
+    if (holds(from + far * direction) == inside) continue;
+    double changed = far;
+    while (changed - near > solids::kTiny * step) {
+      const double middle = 0.5 * (near + changed);
+      (holds(from + middle * direction) == inside ? near : changed) = middle;
+    }
+    return changed < most ? std::optional(changed) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace sluice

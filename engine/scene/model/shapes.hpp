@@ -1,0 +1,59 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "engine/space/vec.hpp"
+
+namespace sluice {
+
+// Shapes. Lengths in m, x to the right, y up.
+
+/// An axis-aligned box by its corner of lowest coordinates: in the plane a rectangle.
+template <int Dim>
+struct Cuboid {
+  static constexpr int dimensions = Dim;
+  VecN<Dim> corner = VecN<Dim>::Zero();  ///< in the plane the lower left one
+  VecN<Dim> size = VecN<Dim>::Zero();
+};
+
+template <int Dim>
+struct Ball {
+  static constexpr int dimensions = Dim;
+  VecN<Dim> center = VecN<Dim>::Zero();
+  double radius = 0.0;
+};
+
+/// Its axes are those of space.
+template <int Dim>
+struct Ellipsoid {
+  static constexpr int dimensions = Dim;
+  VecN<Dim> center = VecN<Dim>::Zero();
+  VecN<Dim> semi_axes = VecN<Dim>::Zero();
+};
+
+using Rectangle = Cuboid<2>;
+using Circle = Ball<2>;
+using Ellipse = Ellipsoid<2>;
+
+/// Of the plane only.
+struct Polygon {
+  static constexpr int dimensions = 2;
+  std::vector<VecN<2>> points;  ///< simple, not closed by repetition
+};
+
+/// Every shape that there is in `Dim` dimensions.
+template <int Dim>
+struct ShapesOf {
+  using Any = std::variant<Cuboid<Dim>, Ball<Dim>, Ellipsoid<Dim>>;
+};
+template <>
+struct ShapesOf<2> {
+  using Any = std::variant<Rectangle, Circle, Ellipse, Polygon>;
+};
+template <int Dim>
+using ShapeN = typename ShapesOf<Dim>::Any;
+
+using Shape = ShapeN<kDim>;
+
+}  // namespace sluice
