@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/scene/geometry/geometry.hpp"
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 
 namespace sluice {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/sph/kernel/kernel.hpp"
 #include "engine/sph/method/equation_of_state.hpp"
-#include "engine/sph/method/kernel.hpp"
 
 namespace sluice {
 namespace {

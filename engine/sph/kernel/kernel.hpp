@@ -4,9 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/sph/method/method.hpp"
-
 namespace sluice {
+
+/// Smoothing function W(R, h), R = |x_ij| / h.
+enum class KernelKind {
+  truncated_gaussian,  ///< eq. 6: pi^(-d/2) h^-d exp(-R^2), R < 3
+  wendland_c2,         ///< 7/(4 pi h^2) (1 - R/2)^4 (2R + 1), R < 2 (d = 2)
+};
 
 /// Smoothing functions in two dimensions, dimensionless: W = value(R^2) / h^2 and grad W_ij =
 /// -slope(R^2) x_ij / h^4, both zero beyond `support` smoothing lengths. The pair sums use vector
@@ -39,6 +43,11 @@ struct WendlandC2 {
     return slope_scale * rest * rest * rest;
   }
 };
+
+/// Distance at which W becomes zero, in smoothing lengths.
+[[nodiscard]] inline double kernel_support(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::support : WendlandC2::support;
+}
 
 /// value(R^2) of the kernel that a method names.
 [[nodiscard]] inline double kernel_value(KernelKind kind, double r_sq) {
