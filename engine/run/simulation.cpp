@@ -22,7 +22,7 @@ namespace sluice {
 namespace {
 
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
-  return Solver(method_with_solids(scene), state, scene_walls(scene), execution);
+  return Solver(scene.method, domain_with_solids(scene), state, scene_walls(scene), execution);
 }
 
 void require_same_scene(const std::string& hash, const Checkpoint& checkpoint) {
@@ -126,7 +126,7 @@ Solver Simulation::start_solver(const Execution& execution) {
   const InitialParticles initial = create_particles(scene_);
   packing_ = initial.packing;
   start_seconds_ = clock.seconds();
-  return Solver(method_with_solids(scene_), initial.state, initial.walls, execution);
+  return Solver(scene_.method, domain_with_solids(scene_), initial.state, initial.walls, execution);
 }
 
 void Simulation::step() {

@@ -34,7 +34,7 @@ Solver fluid_at(const Scene& scene, const std::vector<Vec>& places, double press
     p.vy.push_back(0.0);
     p.density_excess.push_back(pressure / (c * c));
   }
-  return {scene.method, state, {}, {}};
+  return {scene.method, scene.domain, state, {}, {}};
 }
 
 /// Particles in columns from the right wall of the tank to the left, all its height.

@@ -81,12 +81,12 @@ void check_names(const Scene& scene, Problems& problems) {
   }
 }
 
-void check_sensor(const Sensor& sensor, const std::string& pointer, const Method& method,
+void check_sensor(const Sensor& sensor, const std::string& pointer, const Scene& scene,
                   Problems& problems) {
   const bool point = sensor.kind == SensorKind::pressure || sensor.kind == SensorKind::arrival;
   const bool line =
       sensor.kind == SensorKind::surface_height || sensor.kind == SensorKind::column_height;
-  const Box& domain = method.domain;
+  const Box& domain = scene.domain.box;
   const double x = sensor.position.x();
   if (point && !domain.contains(sensor.position)) {
     problems.add(at(pointer, "position"),
@@ -98,11 +98,11 @@ void check_sensor(const Sensor& sensor, const std::string& pointer, const Method
                                                "m",
                                                x, domain.min.x(), domain.max.x()));
   }
-  const double ratio = sensor.smoothing_length / method.smoothing_length;
+  const double ratio = sensor.smoothing_length / scene.method.smoothing_length;
   if (sensor.kind == SensorKind::pressure && !(ratio >= 0.5 && ratio <= 10)) {
     problems.add(at(pointer, "smoothing_length"),
                  fmt::format("is {:.6g} m; must be from 0.5 to 10 smoothing lengths of {:.6g} m",
-                             sensor.smoothing_length, method.smoothing_length));
+                             sensor.smoothing_length, scene.method.smoothing_length));
   }
 }
 
@@ -110,7 +110,7 @@ void check_sensors(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const std::string pointer = at("/sensors", i);
     if (problems.clean({pointer})) {
-      check_sensor(scene.sensors[i], pointer, scene.method, problems);
+      check_sensor(scene.sensors[i], pointer, scene, problems);
     }
   }
 }

@@ -33,7 +33,7 @@ std::vector<Shape> obstacles_near(const Scene& scene, const Vec& point, double r
 }  // namespace
 
 OpenFraction::OpenFraction(const Scene& scene, const Vec& point, double h)
-    : gate_(scene.method.gate) {
+    : gate_(scene.domain.gate) {
   const std::vector<Shape> solids = obstacles_near(scene, point, scene.method.support_ratio() * h);
   const auto is_open = [&](const Vec& place) {
     return (!scene.tank || !in_wall(*scene.tank, place)) &&

@@ -56,9 +56,6 @@ Method unit_method(const Method& wanted) {
   m.spacing = m.sound_speed = m.reference_density = 1.0;
   m.gravity = Vec::Zero();
   if (m.laminar_viscosity) m.laminar_viscosity->nu = 1e-3;
-  m.gate.reset();
-  m.wall_top.reset();
-  m.domain = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
   return m;
 }
 
@@ -81,7 +78,9 @@ Solver small_tank(const Method& method, std::string_view simd) {
       p.density_excess.push_back(0.0);
     }
   }
-  return {method, state, walls, {1, std::string(simd)}};
+  FlowDomain domain;
+  domain.box = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
+  return {method, domain, state, walls, {1, std::string(simd)}};
 }
 
 double measure(const Method& method, std::string_view simd) {

@@ -71,7 +71,7 @@ Probe FluidProbe::surface_height(double x) const {
   const double support = method_.support();
   const double volume = method_.spacing * method_.spacing / (h * h);
   std::vector<Vec> column;
-  const Box whole{{x - support, method_.domain.min.y()}, {x + support, method_.domain.max.y()}};
+  const Box whole{{x - support, domain_.box.min.y()}, {x + support, domain_.box.max.y()}};
   for_each_in(whole, [&](std::size_t s) {
     if (std::abs(particles_.x[s] - x) < support) column.push_back(particles_.position(s));
   });
