@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "engine/scene/format/term_line.hpp"
 #include "engine/scene/model/vocabulary.hpp"
 
 namespace sluice {
@@ -155,6 +156,14 @@ void add_series_lines(std::vector<std::string>& lines, const SeriesComparison& c
   lines.push_back(fmt::format("mean relative L2: {}", brief(comparison.mean_relative_l2)));
 }
 
+bool holds_at_walls(const Method& method) {
+  bool found = false;
+  for_each_term(RateTerms{}, [&]<class Term>() {
+    found |= Term::kSummation.holds_at_walls && method.term<Term>();
+  });
+  return found;
+}
+
 }  // namespace
 
 std::string scheme_text(const Scene& scene) {
@@ -163,28 +172,14 @@ std::string scheme_text(const Scene& scene) {
       fmt::format("{}, {}, precision {}, C = {:g}", word_for(kKernelWords, method.kernel),
                   word_for(kIntegratorWords, method.integrator),
                   word_for(kPrecisionWords, method.precision), method.courant);
-  if (method.diffusion) {
-    text += fmt::format(", diffusion {} delta {:g}",
-                        word_for(kDiffusionWords, method.diffusion->kind), method.diffusion->delta);
-  }
-  if (method.viscosity) text += fmt::format(", viscosity alpha {:g}", method.viscosity->alpha);
-  if (method.viscosity && method.viscosity->beta > 0.0) {
-    text += fmt::format(", beta {:g}", method.viscosity->beta);
-  }
-  if (method.wall_artificial_viscosity) {
-    text += fmt::format(", wall friction alpha {:g}", method.wall_artificial_viscosity->alpha);
-  } else if (method.laminar_viscosity) {
-    text += fmt::format(", nu {:g} m^2/s and no slip", method.laminar_viscosity->nu);
-  } else if (method.wall_shear) {
-    text += fmt::format(", wall drag Cf {:g}", method.wall_shear->coefficient);
-  } else if (scene.tank || !scene.obstacles.empty()) {
-    text += ", free slip";
-  }
+  const auto add = [&]<class Term>() {
+    const auto& term = method.term<Term>();
+    if (term) text += ", " + filled_in(term->in_report(), *term);
+  };
+  for_each_term(RateTerms{}, add);
+  if ((scene.tank || !scene.obstacles.empty()) && !holds_at_walls(method)) text += ", free slip";
   if (method.wall_pressure == WallPressure::clamped) text += ", wall pressure clamped";
-  if (method.shifting) text += fmt::format(", shifting A {:g}", method.shifting->coefficient);
-  if (method.reinitialisation) {
-    text += fmt::format(", reinitialisation every {} steps", method.reinitialisation->interval);
-  }
+  for_each_term(Corrections{}, add);
   if (scene.gate) text += fmt::format(", gate lifted at {:g} m/s", scene.gate->speed);
   return text;
 }

@@ -23,7 +23,7 @@ namespace sluice {
 namespace {
 
 Solver resume_solver(const Scene& scene, const Execution& execution, const SolverState& state) {
-  return Solver(method_with_solids(scene), state, scene_walls(scene), execution);
+  return Solver(scene.method, domain_with_solids(scene), state, scene_walls(scene), execution);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -69,7 +69,7 @@ Solver Simulation::start_solver(const Execution& execution) {
   const InitialParticles initial = create_particles(scene_);
   packing_ = initial.packing;
   start_seconds_ = clock.seconds();
-  return Solver(method_with_solids(scene_), initial.state, initial.walls, execution);
+  return Solver(scene_.method, domain_with_solids(scene_), initial.state, initial.walls, execution);
 }
 
 void Simulation::step() {

@@ -5,11 +5,12 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/space/space_traits.hpp"
 #include "engine/space/vec.hpp"
 
 namespace sluice {
 
-/// One value for each axis of space, in the order of kAxisNames.
+/// One value for each axis of space, in the order of their names.
 template <class T>
 using PerAxis = std::array<T, kDim>;
 
@@ -32,15 +33,11 @@ void append(PerAxis<std::vector<T>>& values, const Vector& vector) {
   }
 }
 
-inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
-
 [[nodiscard]] inline std::string_view axis_name(Eigen::Index axis) {
-  return kAxisNames[static_cast<std::size_t>(axis)];
+  return SpaceTraits<kDim>::axis_names[static_cast<std::size_t>(axis)];
 }
 
-/// The axis along which heights are measured.
-inline constexpr int kUpAxis = 1;
-/// The others: a place on the floor.
+/// All axes but kUpAxis: a place on the floor.
 inline constexpr std::array<int, kDim - 1> kFloorAxes{0};
 
 [[nodiscard]] inline bool points_straight_down(const Vec& vector) {

@@ -42,7 +42,7 @@ Checkpoint prepared(const Scene& scene, const CaseRunner::Prepare& prepare) {
   if (scene.method.integrator == Integrator::modified_leap_frog) {
     particles.velocity_half = particles.velocity;
   }
-  const Solver solver(scene.method, start.solver, scene_walls(scene), {});
+  const Solver solver(scene.method, scene.domain, start.solver, scene_walls(scene), {});
   start.guards = initial_baselines(scene.method, start.solver, solver.energy());
   return start;
 }

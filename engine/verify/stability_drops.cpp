@@ -85,7 +85,7 @@ CaseResult pulsing_drop(CaseRunner& bench) {
   const double radius = std::sqrt(mean_square(p.position[0]));
   double axis_error = 0.0;
   while (state.time < end) {
-    Solver solver(method, state, {}, {});
+    Solver solver(method, parsed.scene->domain, state, {}, {});
     solver.step();
     state = solver.state();
     pull_to_center(p, solver.time_step());

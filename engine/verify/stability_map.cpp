@@ -130,9 +130,10 @@ std::string row_svg(const StabilityRow& row, double y) {
 NoiseGrowth measure_noise(const Method& method, int most_steps, double displacement) {
   Method m = method;
   const double far = 10.0 * kSide * m.spacing;
-  m.domain = {Vec::Constant(-far), Vec::Constant(far)};
+  FlowDomain domain;
+  domain.box = {Vec::Constant(-far), Vec::Constant(far)};
   m.gravity = Vec::Zero();
-  Solver solver(m, noisy_patch(m, displacement), {}, {});
+  Solver solver(m, domain, noisy_patch(m, displacement), {}, {});
   const double start = solver.extremes().max_speed;
   NoiseGrowth growth;
   while (growth.steps < most_steps && !growth.grows) {

@@ -69,12 +69,12 @@ constexpr Case kCases[] = {
     {"no_walls",
      [](Scene& scene) {
        scene.tank.reset();
-       scene.method.wall_top.reset();
+       scene.domain.wall_top.reset();
      }},
     {"nothing_but_the_fluid",
      [](Scene& scene) {
        scene.tank.reset();
-       scene.method.wall_top.reset();
+       scene.domain.wall_top.reset();
        scene.sensors.clear();
        scene.method.diffusion.reset();
        scene.method.viscosity.reset();

@@ -203,16 +203,16 @@ TEST(Leaks, AreCountedWhereAnObstacleIsThinAndNotWhereOneIsThick) {
   Polygon wedge;
   wedge.points = {Vec(0.3, 0.0), Vec(0.3 + 0.06 * 0.3, 0.3), Vec(0.3 - 0.06 * 0.3, 0.3)};
   scene.obstacles = {wedge};
-  const Method method = method_with_solids(scene);
+  const FlowDomain domain = domain_with_solids(scene);
   const auto middle_is_deep = [&](double thickness) {
-    return method.in_solid(Vec(0.3, thickness * dx / width_per_height), 0.0);
+    return domain.in_solid(Vec(0.3, thickness * dx / width_per_height), 0.0);
   };
   for (const double spacings : {0.9, 1.2, 2.0, 3.0, 4.0})
     EXPECT_TRUE(middle_is_deep(spacings)) << spacings;
   // 0.7 spacings deep is beyond 0.6 of the half of what is two spacings thick, not of three.
   const auto is_deep = [&](double thickness) {
     const double y = thickness * dx / width_per_height;
-    return method.in_solid(Vec(0.3 + (0.5 * thickness - 0.7) * dx, y), 0.0);
+    return domain.in_solid(Vec(0.3 + (0.5 * thickness - 0.7) * dx, y), 0.0);
   };
   EXPECT_TRUE(is_deep(2.0));
   EXPECT_FALSE(is_deep(3.0));
@@ -224,12 +224,12 @@ TEST(Leaks, AreNoneInTheToeOfARampForTheFloorIsBelow) {
   Polygon ramp;
   ramp.points = {Vec(0.2, 0.0), Vec(0.4, 0.0), Vec(0.4, 0.02)};
   scene.obstacles = {ramp};
-  const Method method = method_with_solids(scene);
+  const FlowDomain domain = domain_with_solids(scene);
   // On the ramp's surface: 0.1 (x - 0.2).
   const double x = 0.35;
   const double surface = 0.1 * (x - 0.2);
-  EXPECT_FALSE(method.in_solid(Vec(x, surface - 0.9 * dx), 0.0));
-  EXPECT_TRUE(method.in_solid(Vec(x, surface - 1.1 * dx), 0.0));
+  EXPECT_FALSE(domain.in_solid(Vec(x, surface - 0.9 * dx), 0.0));
+  EXPECT_TRUE(domain.in_solid(Vec(x, surface - 1.1 * dx), 0.0));
 }
 
 TEST(Leaks, AreNoneInATipRoundWhichFluidFlows) {
@@ -238,10 +238,10 @@ TEST(Leaks, AreNoneInATipRoundWhichFluidFlows) {
   Polygon wedge;  // of 60 degrees
   wedge.points = {Vec(0.2, 0.0), Vec(0.4, 0.0), Vec(0.3, 0.1 * std::sqrt(3.0))};
   scene.obstacles = {wedge};
-  const Method method = method_with_solids(scene);
+  const FlowDomain domain = domain_with_solids(scene);
   // On its axis a place is half as deep as it is below the tip.
   const auto is_deep = [&](double depth) {
-    return method.in_solid(Vec(0.3, 0.1 * std::sqrt(3.0) - 2.0 * depth * dx), 0.0);
+    return domain.in_solid(Vec(0.3, 0.1 * std::sqrt(3.0) - 2.0 * depth * dx), 0.0);
   };
   for (const double spacings : {0.1, 0.45, 0.7, 0.95}) EXPECT_FALSE(is_deep(spacings)) << spacings;
   for (const double spacings : {1.05, 2.0}) EXPECT_TRUE(is_deep(spacings)) << spacings;
@@ -252,9 +252,9 @@ TEST(Leaks, AreCountedBetweenPlatesThatLieSideBySide) {
   const double dx = scene.method.spacing;
   scene.obstacles = {Rectangle{Vec(0.2, 0.0), Vec(dx, 0.2)},
                      Rectangle{Vec(0.2 + dx, 0.0), Vec(dx, 0.2)}};
-  const Method method = method_with_solids(scene);
-  EXPECT_TRUE(method.in_solid(Vec(0.2 + dx, 0.1), 0.0)) << "in the middle of two spacings";
-  EXPECT_FALSE(method.in_solid(Vec(0.2 + 0.5 * dx, 0.1), 0.0)) << "in the first row";
+  const FlowDomain domain = domain_with_solids(scene);
+  EXPECT_TRUE(domain.in_solid(Vec(0.2 + dx, 0.1), 0.0)) << "in the middle of two spacings";
+  EXPECT_FALSE(domain.in_solid(Vec(0.2 + 0.5 * dx, 0.1), 0.0)) << "in the first row";
 }
 
 }  // namespace

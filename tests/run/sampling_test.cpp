@@ -32,7 +32,7 @@ Solver fluid_at(const Scene& scene, const std::vector<Vec>& places, double press
     append(p.velocity, Vec(Vec::Zero()));
     p.density_excess.push_back(pressure / (c * c));
   }
-  return {scene.method, state, {}, {}};
+  return {scene.method, scene.domain, state, {}, {}};
 }
 
 /// Particles in columns from the right wall of the tank to the left, all its height.

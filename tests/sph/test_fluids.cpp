@@ -7,19 +7,24 @@
 
 namespace sluice {
 
-Method plain_method() {
-  Method m;
+Solver solver_for(const TestMethod& m, const SolverState& state, const std::vector<Vec>& walls,
+                  const Execution& execution) {
+  return {m, m.domain, state, walls, execution};
+}
+
+TestMethod plain_method() {
+  TestMethod m;
   m.spacing = 0.1;
   m.smoothing_length = 0.1;
   m.reference_density = 1000.0;
   m.sound_speed = 20.0;
   m.precision = Precision::double_precision;
-  m.domain = {{-2.0, -2.0}, {2.0, 2.0}};
+  m.domain.box = {{-2.0, -2.0}, {2.0, 2.0}};
   return m;
 }
 
-Method full_method() {
-  Method m = plain_method();
+TestMethod full_method() {
+  TestMethod m = plain_method();
   m.smoothing_length = 0.12;
   m.gravity = {0.7, -9.81};
   m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.13};
@@ -152,9 +157,9 @@ void run_steps(Solver& solver, int steps) {
   for (int n = 0; n < steps; ++n) solver.step();
 }
 
-FluidRates rates_at_start(Method m, const Fluid& fluid, const std::vector<Vec>& walls) {
+FluidRates rates_at_start(TestMethod m, const Fluid& fluid, const std::vector<Vec>& walls) {
   m.integrator = Integrator::modified_leap_frog;
-  Solver solver(m, start_from(fluid), walls, {});
+  Solver solver = solver_for(m, start_from(fluid), walls, {});
   return rates_of_next_step(solver);
 }
 

@@ -45,12 +45,19 @@ class Dice {
   std::mt19937_64 bits_;
 };
 
+/// A method, and where the fluid of a test may be.
+struct TestMethod : Method {
+  FlowDomain domain;
+};
+[[nodiscard]] Solver solver_for(const TestMethod& m, const SolverState& state,
+                                const std::vector<Vec>& walls, const Execution& execution);
+
 /// dx = h = 0.1 m, rho_0 = 1000 kg/m^3, c = 20 m/s; a domain of +-2 m; no term, no gravity, no
 /// walls. The numbers are chosen to differ from 1 and from each other.
-[[nodiscard]] Method plain_method();
+[[nodiscard]] TestMethod plain_method();
 
 /// plain_method() with every term, gravity (0.7, -9.81) m/s^2 and smoothing length 0.12 m.
-[[nodiscard]] Method full_method();
+[[nodiscard]] TestMethod full_method();
 
 /// columns x rows particles at the cell centres of a lattice of spacing dx from `corner`, each
 /// moved by up to `perturbation` dx, with velocities up to `speed` (m/s) and excesses up to
@@ -94,7 +101,7 @@ struct FluidRates {
 };
 
 /// What the engine sums for this fluid at rest in time, out of one leap-frog step.
-[[nodiscard]] FluidRates rates_at_start(Method m, const Fluid& fluid,
+[[nodiscard]] FluidRates rates_at_start(TestMethod m, const Fluid& fluid,
                                         const std::vector<Vec>& walls);
 
 /// Makes one leap-frog step and returns the rates that it used: its last half kick is dt/2 times

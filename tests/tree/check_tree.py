@@ -29,7 +29,7 @@ MAY_INCLUDE["tests"] = set(CHAIN) | {"service", "cli"}
 
 # Rooms of a folder, floor by floor: a room may include from itself and from the floors below it.
 FLOORS = {
-    "engine/sph": [["method", "threads"], ["terms"], ["pairs"], ["loops"], ["stability"], ["solver"]],
+    "engine/sph": [["kernel", "threads"], ["terms"], ["method"], ["pairs"], ["loops"], ["stability"], ["solver"]],
     "engine/scene": [["model"], ["geometry"], ["filling"], ["format"], ["forecast"], ["checks"]],
     "engine/store": [["disk"], ["hdf5"], ["files"], ["read"]],
     "service": [["http"], ["worker"], ["jobs"], ["scheduler"], ["api"]],

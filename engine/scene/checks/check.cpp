@@ -82,12 +82,12 @@ void check_names(const Scene& scene, Problems& problems) {
   }
 }
 
-void check_sensor(const Sensor& sensor, const std::string& pointer, const Method& method,
+void check_sensor(const Sensor& sensor, const std::string& pointer, const Scene& scene,
                   Problems& problems) {
   const bool point = sensor.kind == SensorKind::pressure || sensor.kind == SensorKind::arrival;
   const bool line =
       sensor.kind == SensorKind::surface_height || sensor.kind == SensorKind::column_height;
-  const Box& domain = method.domain;
+  const Box& domain = scene.domain.box;
   if (point && !domain.contains(sensor.position)) {
     problems.add(at(pointer, "position"),
                  fmt::format("is ({:.6g}) m; must lie in /domain, {}",
@@ -100,11 +100,11 @@ void check_sensor(const Sensor& sensor, const std::string& pointer, const Method
                  fmt::format("is {:.6g} m; must lie in /domain, {:.6g} to {:.6g} m", along,
                              domain.min[axis], domain.max[axis]));
   }
-  const double ratio = sensor.smoothing_length / method.smoothing_length;
+  const double ratio = sensor.smoothing_length / scene.method.smoothing_length;
   if (sensor.kind == SensorKind::pressure && !(ratio >= 0.5 && ratio <= 10)) {
     problems.add(at(pointer, "smoothing_length"),
                  fmt::format("is {:.6g} m; must be from 0.5 to 10 smoothing lengths of {:.6g} m",
-                             sensor.smoothing_length, method.smoothing_length));
+                             sensor.smoothing_length, scene.method.smoothing_length));
   }
 }
 
@@ -112,7 +112,7 @@ void check_sensors(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const std::string pointer = at("/sensors", i);
     if (problems.clean({pointer})) {
-      check_sensor(scene.sensors[i], pointer, scene.method, problems);
+      check_sensor(scene.sensors[i], pointer, scene, problems);
     }
   }
 }
@@ -140,19 +140,29 @@ void check_work(const Scene& scene, Problems& problems) {
   }
 }
 
-void check_wall_shear(const Scene& scene, Problems& problems) {
-  const Method& m = scene.method;
-  const auto refuse = [&](std::string_view key, std::string_view other) {
-    problems.add(fmt::format("/numerics/{}", key),
+/// Told of the term that acts at walls alone, rather than of one that acts in the fluid as well.
+template <class First, class Second>
+void check_beside(const Method& m, Problems& problems) {
+  if constexpr (!First::kSummation.over_walls_alone() && Second::kSummation.over_walls_alone()) {
+    check_beside<Second, First>(m, problems);
+  } else if (m.term<First>() && m.term<Second>()) {
+    problems.add(fmt::format("/numerics/{}", First::kText.key),
                  fmt::format("stands beside {}, which holds the fluid at walls already; remove one "
                              "of the two",
-                             other));
+                             Second::kText.key));
+  }
+}
+
+void check_holding_at_walls(const Method&, TermList<>, Problems&) {}
+template <class First, class... Rest>
+void check_holding_at_walls(const Method& m, TermList<First, Rest...>, Problems& problems) {
+  const auto against = [&]<class Other>() {
+    if constexpr (First::kSummation.holds_at_walls && Other::kSummation.holds_at_walls) {
+      check_beside<First, Other>(m, problems);
+    }
   };
-  if (m.wall_artificial_viscosity && m.laminar_viscosity)
-    refuse("wall_artificial_viscosity", "laminar_viscosity");
-  if (m.wall_artificial_viscosity && m.wall_shear)
-    refuse("wall_artificial_viscosity", "wall_shear");
-  if (m.wall_shear && m.laminar_viscosity) refuse("wall_shear", "laminar_viscosity");
+  for_each_term(TermList<Rest...>{}, against);
+  check_holding_at_walls(m, TermList<Rest...>{}, problems);
 }
 
 void check_shifting(const Scene& scene, Problems& problems) {
@@ -246,7 +256,7 @@ void check(const WrittenScene& written, const CheckedAs& as, Problems& problems,
   check_sound_speed(scene, written, problems);
   check_particle_count(scene, problems);
   check_gate(scene, problems);
-  check_wall_shear(scene, problems);
+  check_holding_at_walls(scene.method, RateTerms{}, problems);
   check_shifting(scene, problems);
   if (!placed) return;
   check_domain(scene, written, problems);

@@ -41,7 +41,7 @@ void for_each_shape(const Scene& scene, const Problems& problems, const F& f) {
 
 /// Everything that must lie in the domain: the tank with its walls, else the fluid and obstacles.
 void check_domain_holds(const Scene& scene, const WrittenScene& written, Problems& problems) {
-  const Box& domain = scene.method.domain;
+  const Box& domain = scene.domain.box;
   if (scene.tank) {
     const double walls = static_cast<double>(wall_layers(scene.method)) * scene.method.spacing;
     const double lid = scene.tank->open_top ? 0.0 : walls;
@@ -137,7 +137,7 @@ void check_gate(const Scene& scene, Problems& problems) {
 }
 
 void check_domain(const Scene& scene, const WrittenScene& written, Problems& problems) {
-  const Box& domain = scene.method.domain;
+  const Box& domain = scene.domain.box;
   const double dx = scene.method.spacing;
   if ((domain.min.array() >= domain.max.array()).any()) {
     problems.add("/domain", fmt::format("is {}; min must be below max both ways", show(domain)));

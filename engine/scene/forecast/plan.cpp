@@ -11,6 +11,7 @@
 #include "engine/scene/forecast/workload.hpp"
 #include "engine/scene/format/json_text.hpp"
 #include "engine/scene/format/numerics_json.hpp"
+#include "engine/scene/format/term_line.hpp"
 #include "engine/scene/model/vocabulary.hpp"
 #include "engine/sph/method/particles.hpp"
 
@@ -55,11 +56,15 @@ struct Lists {
       leave_out(name, description, fmt::format("no key {}", key));
     }
   }
-  /// A term of the method, named as its key in `numerics`.
-  void term(bool asked, std::string_view name, std::string_view description,
-            const NumericsSource& source) const {
-    (asked ? in : out)
-        .push_back({std::string(name), std::string(description), source_of(name, asked, source)});
+  /// A term of the method.
+  template <class Term>
+  void term(const Scene& scene) const {
+    constexpr TermText text = Term::kText;
+    const auto& term = scene.method.term<Term>();
+    const std::string line = term ? filled_in(text.plan, *term) : std::string(text.plan_without);
+    (term ? in : out)
+        .push_back(
+            {std::string(text.key), line, source_of(text.key, term.has_value(), scene.numerics)});
   }
 };
 
@@ -68,20 +73,18 @@ bool has_walls(const Scene& scene) { return scene.tank || !scene.obstacles.empty
 void plan_walls(const Scene& scene, const Lists& passes) {
   const std::string about = fmt::format("wall pressure of eq. 9, {}",
                                         word_for(kWallPressureWords, scene.method.wall_pressure));
-  constexpr std::string_view kFriction = "viscosity of eq. 8 against walls";
-  constexpr std::string_view kDrag = "stress at walls that grows with the square of the speed";
   constexpr std::string_view kGate = "dummy particles of the lifted gate";
   if (!has_walls(scene)) {
     passes.leave_out("wall_pressure", about, "no key tank and no key obstacles");
-    passes.leave_out("wall_artificial_viscosity", kFriction, "no walls to rub on");
-    passes.leave_out("wall_shear", kDrag, "no walls to rub on");
-    passes.leave_out("gate", kGate, "no key gate");
-    return;
+  } else {
+    passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
   }
-  passes.run("wall_pressure", about, scene.tank ? "key tank" : "key obstacles");
-  passes.term(scene.method.wall_artificial_viscosity.has_value(), "wall_artificial_viscosity",
-              kFriction, scene.numerics);
-  passes.term(scene.method.wall_shear.has_value(), "wall_shear", kDrag, scene.numerics);
+  for_each_term(RateTerms{}, [&]<class Term>() {
+    if constexpr (Term::kSummation.over_walls_alone()) {
+      if (has_walls(scene)) return passes.term<Term>(scene);
+      passes.leave_out(Term::kText.key, Term::kText.plan_without, "no walls to rub on");
+    }
+  });
   passes.either(scene.gate.has_value(), "gate", kGate, "gate");
 }
 
@@ -118,31 +121,14 @@ void plan_passes(const Scene& scene, const Lists& passes) {
   passes.always("sort", "particles into rows of cells, every so many steps or when one has left");
   passes.always("continuity", "density rate of eq. 4");
   passes.always("momentum", "pressure part of eq. 5");
-  const std::string diffusion =
-      m.diffusion ? fmt::format("eq. 7, {}, delta {}", word_for(kDiffusionWords, m.diffusion->kind),
-                                m.diffusion->delta)
-                  : "eq. 7";
-  passes.term(m.diffusion.has_value(), "density_diffusion", diffusion, scene.numerics);
-  passes.term(m.viscosity.has_value(), "artificial_viscosity", "eq. 8 between fluid particles",
-              scene.numerics);
-  const std::string stress =
-      m.laminar_viscosity
-          ? fmt::format("viscous stress, nu {} m^2/s, no slip at walls", m.laminar_viscosity->nu)
-          : "viscous stress, no slip at walls";
-  passes.term(m.laminar_viscosity.has_value(), "laminar_viscosity", stress, scene.numerics);
+  for_each_term(RateTerms{}, [&]<class Term>() {
+    if constexpr (!Term::kSummation.over_walls_alone()) passes.term<Term>(scene);
+  });
   plan_walls(scene, passes);
   passes.either(!m.gravity.isZero(0.0), "gravity", "body acceleration of eq. 5", "gravity");
   passes.run("update", "time step of eq. 18 and integration",
              fmt::format("numerics.integrator {}", word_for(kIntegratorWords, m.integrator)));
-  const std::string shifting =
-      m.shifting ? fmt::format("towards where particles lack, A {}, in the sweep of eq. 4",
-                               m.shifting->coefficient)
-                 : "towards where particles lack";
-  passes.term(m.shifting.has_value(), "particle_shifting", shifting, scene.numerics);
-  const std::string reinitialisation =
-      m.reinitialisation ? fmt::format("eq. 10, every {} steps", m.reinitialisation->interval)
-                         : "eq. 10";
-  passes.term(m.reinitialisation.has_value(), "reinitialisation", reinitialisation, scene.numerics);
+  for_each_term(Corrections{}, [&]<class Term>() { passes.term<Term>(scene); });
   passes.either(!scene.sensors.empty(), "sample", fmt::format("{} sensors", scene.sensors.size()),
                 "sensors");
 }

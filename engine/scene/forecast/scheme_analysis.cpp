@@ -24,7 +24,7 @@ struct SchemeNumbers {
       : integrator(m.integrator),
         kernel(m.kernel),
         spacing(m.spacing / m.smoothing_length),
-        two_nu(m.scaled_two_nu()) {
+        two_nu(scaled_two_nu(m.laminar_viscosity, m)) {
     if (m.viscosity) viscosity.emplace(m.viscosity->alpha, m.viscosity->epsilon);
     if (m.diffusion) delta = m.diffusion->delta;
   }

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+
 #include "engine/scene/format/describe_ranges.hpp"
 #include "engine/scene/model/scene.hpp"
 #include "engine/scene/model/vocabulary.hpp"
@@ -8,60 +12,32 @@ namespace sluice {
 
 // Part of the scene format (describe.hpp): the terms of the method, and the scheme.
 
-template <class Archive>
-void describe(Archive& a, DensityDiffusion& term) {
-  a.word("kind", kDiffusionWords, term.kind, {.about = "what is diffused"});
-  a.number("delta", term.delta, {.about = "strength delta of eq. 7", .range = from(0, 2)});
+template <class Archive, class Term, class Value>
+void describe(Archive& a, Term& term, const Number<Term, Value>& number) {
+  const NumberSpec spec{.about = number.about, .unit = number.unit, .range = number.range};
+  if constexpr (std::is_same_v<Value, int>) {
+    a.integer(number.key, term.*number.member, spec);
+  } else {
+    a.number(number.key, term.*number.member, spec);
+  }
+}
+template <class Archive, class Term, class Enum, std::size_t n>
+void describe(Archive& a, Term& term, const Choice<Term, Enum, n>& choice) {
+  a.word(choice.key, choice.words, term.*choice.member, {.about = choice.about});
 }
 
-template <class Archive>
-void describe_viscosity(Archive& a, double& alpha, double& epsilon) {
-  a.number("alpha", alpha, {.about = "strength alpha of eq. 8", .range = from(0, 10)});
-  a.number(
-      "epsilon", epsilon,
-      {.about = "keeps the denominator of eq. 8 from zero: epsilon h^2", .range = above(0, 1)});
-}
-template <class Archive>
-void describe(Archive& a, ArtificialViscosity& term) {
-  describe_viscosity(a, term.alpha, term.epsilon);
-  a.number("beta", term.beta,
-           {.about = "strength of the quadratic part, which acts where particles collide and keeps "
-                     "them apart at impacts; 0 leaves it out",
-            .range = from(0, 10)});
-}
-template <class Archive>
-void describe(Archive& a, WallArtificialViscosity& term) {
-  describe_viscosity(a, term.alpha, term.epsilon);
+/// A term, by its parameters.
+template <class Archive, class Term>
+requires requires { Term::kParameters; }
+void describe(Archive& a, Term& term) {
+  std::apply([&](const auto&... each) { (describe(a, term, each), ...); }, Term::kParameters);
 }
 
-template <class Archive>
-void describe(Archive& a, LaminarViscosity& term) {
-  a.number("nu", term.nu,
-           {.about = "kinematic viscosity: 1e-6 m^2/s is water's own, a turbulent flow's is larger",
-            .unit = "m^2/s",
-            .range = from(0, 1e12)});
-}
-
-template <class Archive>
-void describe(Archive& a, WallShear& term) {
-  a.number("coefficient", term.coefficient,
-           {.about = "skin friction coefficient: stress at the wall over rho v^2/2; 0.004 is a "
-                     "smooth wall's, more stands for walls in front and behind as well",
-            .range = from(0, 1)});
-}
-
-template <class Archive>
-void describe(Archive& a, ParticleShifting& term) {
-  a.number("coefficient", term.coefficient,
-           {.about = "A: a particle moves by A h |v| dt grad C against the gradient of the "
-                     "concentration C, at most 0.1 particle distances in a step",
-            .range = above(0, 10)});
-}
-
-template <class Archive>
-void describe(Archive& a, Reinitialisation& term) {
-  a.integer("interval", term.interval,
-            {.about = "steps from one reinitialisation to the next", .range = from(1, 1e6)});
+template <class List, class Archive>
+void describe_terms(Archive& a, Method& method) {
+  for_each_term(List{}, [&]<class Term>() {
+    a.term(Term::kText.key, method.term<Term>(), {.about = Term::kText.about});
+  });
 }
 
 /// Of a scheme, and of single keys beside it. A term takes null: left out.
@@ -79,22 +55,10 @@ void describe_numerics(Archive& a, Scene& scene) {
                      "gives for particles at rest (sluice plan)",
             .range = above(0, 2)});
   a.word("precision", kPrecisionWords, method.precision, {.about = "arithmetic"});
-  a.term("density_diffusion", method.diffusion, {.about = "density diffusion D_i, eq. 7"});
-  a.term("artificial_viscosity", method.viscosity,
-         {.about = "artificial viscosity Pi_ij between fluid particles, eq. 8"});
-  a.term("wall_artificial_viscosity", method.wall_artificial_viscosity,
-         {.about = "Pi_ij of eq. 8 against walls at rest; not beside laminar_viscosity; in place "
-                   "of wall_shear"});
-  a.term("laminar_viscosity", method.laminar_viscosity,
-         {.about = "viscous stress in the fluid, no slip at walls; in place of wall_shear"});
-  a.term("wall_shear", method.wall_shear,
-         {.about = "stress at walls that grows with the square of the speed"});
+  describe_terms<RateTerms>(a, method);
   a.word("wall_pressure", kWallPressureWords, method.wall_pressure,
          {.about = "pressure of the walls' dummy particles, eq. 9"});
-  a.term("particle_shifting", method.shifting,
-         {.about = "moves particles inside the fluid to where others lack; with kick_drift_kick"});
-  a.term("reinitialisation", method.reinitialisation,
-         {.about = "density reinitialisation, eq. 10"});
+  describe_terms<Corrections>(a, method);
 }
 
 }  // namespace sluice

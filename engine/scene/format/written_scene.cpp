@@ -96,7 +96,7 @@ WrittenScene::WrittenScene(std::optional<Scheme> scheme) {
 
 WrittenScene::WrittenScene(const Scene& from)
     : scene(from),
-      domain(from.method.domain),
+      domain(from.domain.box),
       sound_speed(from.method.sound_speed),
       smoothing_ratio(ratio_of(from.method.smoothing_length, from.method.spacing)) {
   if (!from.method.gravity.isZero(0.0)) gravity = from.method.gravity;
@@ -134,17 +134,17 @@ Scene resolve(const WrittenScene& written) {
   method.smoothing_length =
       written.smoothing_ratio.value_or(default_smoothing_ratio(method.kernel)) * method.spacing;
   method.sound_speed = written.sound_speed ? *written.sound_speed : default_sound_speed(scene);
-  method.domain = written.domain ? *written.domain : default_domain(scene);
+  scene.domain.box = written.domain ? *written.domain : default_domain(scene);
   // Nothing passes over a lid: what leaves a closed tank has leaked, wherever.
   if (scene.tank && scene.tank->open_top) {
-    method.wall_top = scene.tank->height;
+    scene.domain.wall_top = scene.tank->height;
     const double middle = static_cast<double>(wall_layers(method)) / 2 * method.spacing;
-    method.rim_left = -middle;
-    method.rim_right = scene.tank->width + middle;
+    scene.domain.rim_left = -middle;
+    scene.domain.rim_right = scene.tank->width + middle;
   }
   if (scene.gate && scene.tank) {
     if (scene.gate->height == 0.0) scene.gate->height = scene.tank->height;
-    method.gate = GateMotion{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
+    scene.domain.gate = GateMotion{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
   }
   for (Sensor& sensor : scene.sensors) {
     const bool wants_length = sensor.kind == SensorKind::pressure;

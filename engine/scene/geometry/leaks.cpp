@@ -25,11 +25,11 @@ bool is_deep(const GateMotion& gate, const Vec& place, double time, double depth
   return grown(standing, -depth).contains(place);
 }
 
-void add_tank(const TankRoom& tank, double depth, Method& method) {
-  method.room = {Vec::Constant(-depth), tank.size.array() + depth};
+void add_tank(const TankRoom& tank, double depth, FlowDomain& domain) {
+  domain.room = {Vec::Constant(-depth), tank.size.array() + depth};
   if (!tank.open_top) return;
-  method.room.max[kUpAxis] = std::numeric_limits<double>::infinity();
-  method.walls_reach = tank.size[kUpAxis] - depth;
+  domain.room.max[kUpAxis] = std::numeric_limits<double>::infinity();
+  domain.walls_reach = tank.size[kUpAxis] - depth;
 }
 
 /// The obstacles, with all that is needed to say who is deep in them.
@@ -94,20 +94,20 @@ double allowed_depth(double thickness, double spacing) {
   return std::clamp(0.6 * 0.5 * thickness, kShallow * spacing, spacing);
 }
 
-Method method_with_solids(const Scene& scene) {
-  Method method = scene.method;
-  const double depth = method.spacing;
-  if (scene.tank) add_tank(room_of(*scene.tank), depth, method);
-  if (scene.obstacles.empty() && !method.gate) return method;
+FlowDomain domain_with_solids(const Scene& scene) {
+  FlowDomain domain = scene.domain;
+  const double depth = scene.method.spacing;
+  if (scene.tank) add_tank(room_of(*scene.tank), depth, domain);
+  if (scene.obstacles.empty() && !domain.gate) return domain;
   Scene solid;
   solid.tank = scene.tank;
   solid.obstacles = scene.obstacles;
-  solid.method.spacing = method.spacing;
-  method.in_solid = [obstacles = Obstacles(solid), gate = method.gate, depth](const Vec& place,
+  solid.method.spacing = scene.method.spacing;
+  domain.in_solid = [obstacles = Obstacles(solid), gate = domain.gate, depth](const Vec& place,
                                                                               double time) {
     return (gate && is_deep(*gate, place, time, depth)) || obstacles.hold_deep(place);
   };
-  return method;
+  return domain;
 }
 
 }  // namespace sluice

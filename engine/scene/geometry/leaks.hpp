@@ -10,8 +10,8 @@ namespace sluice {
 /// is deep.
 [[nodiscard]] double allowed_depth(double thickness, double spacing);
 
-/// The scene's method with what its solids fill: the tank's walls, obstacles, and the gate while it
+/// The scene's domain with what its solids fill: the tank's walls, obstacles, and the gate while it
 /// is there.
-[[nodiscard]] Method method_with_solids(const Scene& scene);
+[[nodiscard]] FlowDomain domain_with_solids(const Scene& scene);
 
 }  // namespace sluice

@@ -5,7 +5,7 @@
 #include "engine/scene/geometry/directions.hpp"
 #include "engine/scene/geometry/geometry.hpp"
 #include "engine/scene/geometry/tank_room.hpp"
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 
 namespace sluice {
 namespace {
@@ -34,7 +34,7 @@ std::vector<Shape> obstacles_near(const Scene& scene, const Vec& point, double r
 }  // namespace
 
 OpenFraction::OpenFraction(const Scene& scene, const Vec& point, double h)
-    : gate_(scene.method.gate) {
+    : gate_(scene.domain.gate) {
   const std::vector<Shape> solids = obstacles_near(scene, point, scene.method.support_ratio() * h);
   const auto is_open = [&](const Vec& place) {
     return (!scene.tank || !in_wall(room_of(*scene.tank), place)) &&

@@ -9,6 +9,7 @@
 #include "engine/scene/model/scheme.hpp"
 #include "engine/scene/model/shapes.hpp"
 #include "engine/space/vec.hpp"
+#include "engine/sph/method/flow_domain.hpp"
 #include "engine/sph/method/method.hpp"
 #include "sluice/experiment_words.hpp"
 
@@ -119,6 +120,7 @@ struct Scene {
   std::vector<FluidRegion> fluid;
   std::vector<Shape> obstacles;
   Method method;
+  FlowDomain domain;        ///< without what solids fill: domain_with_solids() adds it
   NumericsSource numerics;  ///< where the method's words and terms come from; changes nothing
   std::vector<Sensor> sensors;
   std::optional<Perturbation> perturbation;

@@ -1,5 +1,7 @@
 #include "engine/scene/model/scheme.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace sluice {
@@ -33,6 +35,20 @@ Method paper_method() {
   return m;
 }
 
+template <class Term>
+bool is_named(const NumericsSource& source) {
+  return source.names(fmt::format("/{}", Term::kText.key));
+}
+
+/// Whether the scene itself has a term that holds the fluid at walls.
+bool is_held_at_walls(const Method& method, const NumericsSource& source) {
+  bool found = false;
+  for_each_term(RateTerms{}, [&]<class Term>() {
+    found |= Term::kSummation.holds_at_walls && method.term<Term>() && is_named<Term>(source);
+  });
+  return found;
+}
+
 }  // namespace
 
 Method method_of(std::optional<Scheme> scheme) {
@@ -58,8 +74,10 @@ void leave_out_excluded(Method& method, const NumericsSource& source) {
   const bool leap_frog = method.integrator == Integrator::modified_leap_frog;
   if (leap_frog && !source.names("/particle_shifting")) method.shifting.reset();
   if (leap_frog && !source.names("/courant")) method.courant = kPaperCourant;
-  const bool held = method.wall_artificial_viscosity || method.laminar_viscosity;
-  if (held && !source.names("/wall_shear")) method.wall_shear.reset();
+  for_each_term(RateTerms{}, [&]<class Term>() {
+    if (is_named<Term>(source) || !Term::kSummation.holds_at_walls) return;
+    if (is_held_at_walls(method, source)) method.term<Term>().reset();
+  });
 }
 
 }  // namespace sluice

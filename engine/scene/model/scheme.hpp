@@ -32,8 +32,8 @@ struct NumericsSource {
 };
 
 /// Leaves out what the scheme brought and what the scene names beside it excludes: particle
-/// shifting, and a step that is too long, beside modified_leap_frog; wall_shear beside
-/// wall_artificial_viscosity or laminar_viscosity. What the scene names itself stays.
+/// shifting, and a step that is too long, beside modified_leap_frog; a term that holds the fluid at
+/// walls beside another that does. What the scene names itself stays.
 void leave_out_excluded(Method& method, const NumericsSource& source);
 
 }  // namespace sluice

@@ -57,11 +57,6 @@ inline constexpr Words<Precision, 2> kPrecisionWords{{
     {"mixed", Precision::mixed, "sums in single, state in double precision"},
     {"double", Precision::double_precision, "everything in double precision"},
 }};
-inline constexpr Words<DiffusionKind, 2> kDiffusionWords{{
-    {"molteni_colagrossi", DiffusionKind::molteni_colagrossi, "of the density"},
-    {"fourtakas", DiffusionKind::fourtakas,
-     "of the density less its hydrostatic part, between fluid particles"},
-}};
 inline constexpr Words<WallPressure, 2> kWallPressureWords{{
     {"extrapolated", WallPressure::extrapolated, "may be negative"},
     {"clamped", WallPressure::clamped, "not below zero: keeps particles from the wall's far side"},

@@ -21,7 +21,8 @@ HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
+inline void measure(const ParticleSpan& p, const Method& method, const FlowDomain& domain,
+                    Motion& out) {
   using D = hn::ScalableTag<double>;
   const D d;
   using V = hn::Vec<D>;
@@ -35,16 +36,16 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
   // As cause_to_remove(). All comparisons are false for a NaN.
   const V sound_sq = hn::Set(d, method.sound_speed * method.sound_speed);
   const V most_excess = hn::Set(d, method.most_density_excess());
-  const Box& domain = method.domain;
-  const Box& room = method.room;
-  const V over_from = hn::Set(d, method.over_from());
-  const V rim_left = hn::Set(d, method.rim_left);
-  const V rim_right = hn::Set(d, method.rim_right);
+  const Box& box = domain.box;
+  const Box& room = domain.room;
+  const V over_from = hn::Set(d, domain.over_from());
+  const V rim_left = hn::Set(d, domain.rim_left);
+  const V rim_right = hn::Set(d, domain.rim_right);
   const V room_left = hn::Set(d, room.min.x());
   const V room_right = hn::Set(d, room.max.x());
   const V room_floor = hn::Set(d, room.min.y());
   const V room_ceiling = hn::Set(d, room.max.y());
-  const V walls_reach = hn::Set(d, method.walls_reach);
+  const V walls_reach = hn::Set(d, domain.walls_reach);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = at(p.id, s) >= hn::Zero(d);
     const V vx = at(p.vx, s);
@@ -58,8 +59,8 @@ inline void measure(const ParticleSpan& p, const Method& method, Motion& out) {
     high = hn::Max(high, hn::IfThenElse(used, rho, high));
     front = hn::Max(front, hn::IfThenElse(used, x, front));
     const auto inside =
-        hn::And(hn::And(x >= hn::Set(d, domain.min.x()), x <= hn::Set(d, domain.max.x())),
-                hn::And(y >= hn::Set(d, domain.min.y()), y <= hn::Set(d, domain.max.y())));
+        hn::And(hn::And(x >= hn::Set(d, box.min.x()), x <= hn::Set(d, box.max.x())),
+                hn::And(y >= hn::Set(d, box.min.y()), y <= hn::Set(d, box.max.y())));
     const auto over = hn::And(y >= over_from, hn::Or(x<rim_left, x> rim_right));
     const auto outside_room =
         hn::Or(hn::Or(x<room_left, x> room_right), hn::Or(y<room_floor, y> room_ceiling));

@@ -34,7 +34,7 @@ void sum_reinitialisation(const SweepTask<T>& task) {
       const V x_i = load_i(task.self.x + slot);
       const V y_i = load_i(task.self.y + slot);
       const V volume_i = load_i(task.self.volume + slot);
-      const V numerator_i = ShepardTerm::numerator(load_i(task.self.excess + slot), volume_i);
+      const V numerator_i = ShepardSummands::numerator(load_i(task.self.excess + slot), volume_i);
       V excess = hn::Zero(d);
       V weight = hn::Zero(d);
       const auto add = [&]<Share kShare>(const PairList::Chunk& list,
@@ -43,7 +43,7 @@ void sum_reinitialisation(const SweepTask<T>& task) {
                       [&](std::size_t j, V dx, V dy, std::size_t n, std::size_t of_j) HWY_ATTR {
                         const V w = Shape::value(d, hn::MulAdd(dx, dx, dy * dy));
                         const V volume = load_j(other.volume + j);
-                        const V s = ShepardTerm::numerator(load_j(other.excess + j), volume);
+                        const V s = ShepardSummands::numerator(load_j(other.excess + j), volume);
                         excess = hn::MulAdd(w, s, excess);
                         weight = hn::MulAdd(w, volume, weight);
                         if constexpr (kShare == Share::both) {

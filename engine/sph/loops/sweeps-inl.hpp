@@ -10,13 +10,13 @@
 
 #include <hwy/highway.h>
 
+#include "engine/sph/kernel/kernel-inl.hpp"
 #include "engine/sph/loops/list_search-inl.hpp"
 #include "engine/sph/loops/rates-inl.hpp"
 #include "engine/sph/loops/reinitialisation-inl.hpp"
 #include "engine/sph/loops/sweeps.hpp"
 #include "engine/sph/loops/updates-inl.hpp"
 #include "engine/sph/loops/wall_pressure-inl.hpp"
-#include "engine/sph/method/kernel-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "engine/sph/loops/updates.hpp"
 #include "engine/sph/method/method.hpp"
@@ -12,17 +13,19 @@
 
 namespace sluice {
 
-/// Constants of the terms, dimensionless (terms-inl.hpp).
+/// Constants of the terms of the rates against one kind of neighbours, dimensionless. Those of an
+/// absent term are not read.
+template <typename T, class... Listed>
+std::tuple<typename Listed::template Constants<T>...> constants_of(TermList<Listed...>);
+template <typename T>
+using RateConstants = decltype(constants_of<T>(RateTerms{}));
+
+/// Constants of all sums, dimensionless.
 template <typename T>
 struct TermConstants {
-  T two_delta{};
-  T two_delta_wall{};  ///< 0 where nothing is diffused between fluid and walls
-  T viscosity_alpha{}, viscosity_epsilon{1}, viscosity_beta{};
-  T friction_alpha{}, friction_epsilon{1};
-  T two_nu{};
-  T wall_two_nu_by_speed{};
-  T gravity_x{}, gravity_y{};
-  T origin_cell_size{};  ///< in h
+  RateConstants<T> in_fluid, at_walls;
+  T gravity_x{}, gravity_y{};  ///< f h/c^2
+  T origin_cell_size{};        ///< in h
 };
 
 /// One chunk of clusters i against the clusters j of its lists.

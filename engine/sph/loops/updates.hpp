@@ -6,6 +6,7 @@
 #include <span>
 
 #include "engine/space/vec.hpp"
+#include "engine/sph/method/flow_domain.hpp"
 #include "engine/sph/method/method.hpp"
 #include "engine/sph/method/particles.hpp"
 #include "engine/sph/pairs/layout.hpp"
@@ -140,7 +141,7 @@ struct Updates {
   /// eq. 10 into both time levels, by the same increment.
   void (*reinitialise)(const ParticleSpan&, const Rates<T>&, double reference_density) = nullptr;
   /// Speeds, densities, the front and who is to be removed.
-  void (*measure)(const ParticleSpan&, const Method&, Motion&) = nullptr;
+  void (*measure)(const ParticleSpan&, const Method&, const FlowDomain&, Motion&) = nullptr;
   /// Largest acceleration of the state.
   void (*measure_acceleration)(const ParticleSpan&, Motion&) = nullptr;
   /// Largest acceleration of the rates.

@@ -25,7 +25,7 @@ void sum_wall_pressure(const SweepTask<T>& task) {
   using V = typename B::V;
   const typename B::D d;
   const OriginShift<T> shift(task.constants->origin_cell_size);
-  const WallPressureTerm<T> term{task.constants->gravity_x, task.constants->gravity_y};
+  const WallPressureSummand<T> term{task.constants->gravity_x, task.constants->gravity_y};
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {
       const std::size_t slot = kCluster * (task.first_cluster + c) + part;

@@ -41,15 +41,15 @@ std::string_view to_string(RemovalCause cause) {
   return "";
 }
 
-std::optional<RemovalCause> cause_to_remove(const Method& method, const Particles& p,
-                                            std::size_t slot, double time) {
+std::optional<RemovalCause> cause_to_remove(const Method& method, const FlowDomain& domain,
+                                            const Particles& p, std::size_t slot, double time) {
   const Vec place = p.position_of(slot);
   const auto unfit = cause_to_exclude(method, place, p.velocity_of(slot), p.density_excess[slot]);
   if (unfit) return unfit;
-  if (!method.keeps(place)) {
-    return place.y() >= method.over_from() ? RemovalCause::overtopped : RemovalCause::leaked;
+  if (!domain.keeps(place)) {
+    return place.y() >= domain.over_from() ? RemovalCause::overtopped : RemovalCause::leaked;
   }
-  if (method.in_solid && method.in_solid(place, time)) return RemovalCause::leaked;
+  if (domain.in_solid && domain.in_solid(place, time)) return RemovalCause::leaked;
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/sph/method/flow_domain.hpp"
 #include "engine/sph/method/method.hpp"
 #include "engine/sph/method/particles.hpp"
 
@@ -11,6 +12,7 @@ namespace sluice {
 /// Why the particle in a slot is no part of the fluid any more at time t, if so: it is what the
 /// scheme cannot hold, or where the run does not go on, or in a solid.
 [[nodiscard]] std::optional<RemovalCause> cause_to_remove(const Method& method,
+                                                          const FlowDomain& domain,
                                                           const Particles& particles,
                                                           std::size_t slot, double time);
 

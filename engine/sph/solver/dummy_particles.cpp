@@ -7,6 +7,7 @@ namespace sluice {
 
 template <typename T>
 DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Method& method,
+                                  const std::optional<GateMotion>& gate,
                                   const std::vector<Vec>& places)
     : count_(places.size()) {
   if (places.empty()) return;
@@ -33,7 +34,7 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
     slot_x[s] = x[i];
     slot_y[s] = y[i];
     slot_id[s] = id[i];
-    if (method.gate && method.gate->place.contains(places[i])) {
+    if (gate && gate->place.contains(places[i])) {
       lifted_.push_back({places[i], s});
     }
   }
@@ -79,9 +80,9 @@ void DummyParticles<T>::sum_pressures(ThreadTeam& team, const Method& method,
 }
 
 template <typename T>
-void DummyParticles<T>::lift(const Method& method, double time) {
+void DummyParticles<T>::lift(const std::optional<GateMotion>& gate, double time) {
   std::erase_if(lifted_, [&](const GateParticle& p) {
-    if (!method.gate->has_passed(p.place, time)) return false;
+    if (!gate->has_passed(p.place, time)) return false;
     arrays_.x[p.slot] = arrays_.y[p.slot] = static_cast<T>(-nowhere(p.slot));
     arrays_.excess[p.slot] = arrays_.pressure_term[p.slot] = T{0};
     arrays_.volume[p.slot] = T{1};

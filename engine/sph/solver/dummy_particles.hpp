@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "engine/space/vec.hpp"
 #include "engine/sph/loops/sweeps.hpp"
+#include "engine/sph/method/flow_domain.hpp"
 #include "engine/sph/method/method.hpp"
 #include "engine/sph/pairs/layout.hpp"
 #include "engine/sph/pairs/pair_arrays.hpp"
@@ -20,7 +22,7 @@ class DummyParticles {
  public:
   /// `places` in m.
   DummyParticles(ThreadTeam& team, const Grid& grid, const Method& method,
-                 const std::vector<Vec>& places);
+                 const std::optional<GateMotion>& gate, const std::vector<Vec>& places);
 
   [[nodiscard]] bool empty() const { return layout_.slots() == 0; }
   [[nodiscard]] PairView<T> view() const { return arrays_.view(); }
@@ -37,7 +39,7 @@ class DummyParticles {
 
   /// Takes out what the lower edge of the lifted wall has passed at `time`, s: out of the kernel's
   /// reach, without pressure.
-  void lift(const Method& method, double time);
+  void lift(const std::optional<GateMotion>& gate, double time);
 
   /// Pa, in the order of `places`, as they were summed last.
   [[nodiscard]] std::vector<double> pressures(const Method& method) const;

@@ -13,14 +13,15 @@ constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 }  // namespace
 
 template <typename T>
-Engine<T>::Engine(const Method& m, const SolverState& state, const std::vector<Vec>& walls,
-                  const Execution& exec)
-    : grid_(m.domain, m.spacing, m.smoothing_length, state.particles.size() + walls.size()),
+Engine<T>::Engine(const Method& m, const FlowDomain& where, const SolverState& state,
+                  const std::vector<Vec>& walls, const Execution& exec)
+    : grid_(where.box, m.spacing, m.smoothing_length, state.particles.size() + walls.size()),
       sweeps_(select_sweeps<T>(m, exec.simd_target)),
       team_(exec.threads),
       constants_(term_constants<T>(m, grid_.origin_cell_size())),
-      walls_(team_, grid_, m, walls) {
+      walls_(team_, grid_, m, where.gate, walls) {
   method = m;
+  domain = where;
   execution = exec;
   wall_count = walls.size();
   simd_target = sweeps_.target;
@@ -54,7 +55,7 @@ void Engine<T>::load(const SolverState& state) {
   if (fresh) remove();
   reorder(sort_into_clusters(team_, grid_, particles.position_sorted[0],
                              particles.position_sorted[1], particles.id));
-  walls_.lift(method, time);
+  walls_.lift(domain.gate, time);
   bind();
   // Between sorts nobody counts: a state that is gone on with must not be judged otherwise.
   if (fresh) count_neighbours();
@@ -101,7 +102,7 @@ void Engine<T>::note_motion(const Motion& seen) {
 template <typename T>
 void Engine<T>::measure() {
   note_motion(for_chunks([&](const ParticleSpan& p, Motion& seen) {
-    sweeps_.updates.measure(p, method, seen);
+    sweeps_.updates.measure(p, method, domain, seen);
     if (p.ax != nullptr) sweeps_.updates.measure_acceleration(p, seen);
   }));
 }
@@ -136,7 +137,7 @@ Energy Engine<T>::energy() {
 
 template <typename T>
 FluidProbe Engine<T>::probe() const {
-  return {method, particles, layout, bounds, sweeps_.updates.sum_around};
+  return {method, domain, particles, layout, bounds, sweeps_.updates.sum_around};
 }
 
 template <typename T>
@@ -171,16 +172,18 @@ template ParticleSpan Engine<float>::span(std::size_t);
 template ParticleSpan Engine<double>::span(std::size_t);
 
 template <typename T>
-std::unique_ptr<Solver::Impl> make_engine(const Method& method, const SolverState& state,
-                                          const std::vector<Vec>& walls,
+std::unique_ptr<Solver::Impl> make_engine(const Method& method, const FlowDomain& domain,
+                                          const SolverState& state, const std::vector<Vec>& walls,
                                           const Execution& execution) {
-  return std::make_unique<Engine<T>>(method, state, walls, execution);
+  return std::make_unique<Engine<T>>(method, domain, state, walls, execution);
 }
 
-template std::unique_ptr<Solver::Impl> make_engine<float>(const Method&, const SolverState&,
+template std::unique_ptr<Solver::Impl> make_engine<float>(const Method&, const FlowDomain&,
+                                                          const SolverState&,
                                                           const std::vector<Vec>&,
                                                           const Execution&);
-template std::unique_ptr<Solver::Impl> make_engine<double>(const Method&, const SolverState&,
+template std::unique_ptr<Solver::Impl> make_engine<double>(const Method&, const FlowDomain&,
+                                                           const SolverState&,
                                                            const std::vector<Vec>&,
                                                            const Execution&);
 

@@ -25,6 +25,7 @@ class Solver::Impl {
   virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
 
   Method method;
+  FlowDomain domain;
   Execution execution;
   Particles particles;  ///< per slot: four to a cluster, empty slots have id -1
   Layout layout;
@@ -49,6 +50,7 @@ class Solver::Impl {
 /// Method and state to an engine whose pair sums run in T.
 template <typename T>
 [[nodiscard]] std::unique_ptr<Solver::Impl> make_engine(const Method& method,
+                                                        const FlowDomain& domain,
                                                         const SolverState& state,
                                                         const std::vector<Vec>& walls,
                                                         const Execution& execution);

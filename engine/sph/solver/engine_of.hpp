@@ -33,8 +33,8 @@ class PassClock {
 template <typename T>
 class Engine final : public Solver::Impl {
  public:
-  Engine(const Method& m, const SolverState& state, const std::vector<Vec>& walls,
-         const Execution& exec);
+  Engine(const Method& m, const FlowDomain& where, const SolverState& state,
+         const std::vector<Vec>& walls, const Execution& exec);
 
   void step() override;
   [[nodiscard]] Energy energy() override;

@@ -36,7 +36,7 @@ bool Engine<T>::somebody_in_a_solid() {
   };
   return for_chunks<Seen>([&](const ParticleSpan& p, Seen& seen) {
            for (std::size_t s = p.begin; s < p.end; ++s) {
-             seen.somebody |= p.id[s] >= 0.0 && method.in_solid({p.x[s], p.y[s]}, time);
+             seen.somebody |= p.id[s] >= 0.0 && domain.in_solid({p.x[s], p.y[s]}, time);
            }
          })
       .somebody;
@@ -45,7 +45,7 @@ bool Engine<T>::somebody_in_a_solid() {
 /// Whether particles are to be removed, or their order has served its time.
 template <typename T>
 bool Engine<T>::order_due() {
-  if (method.in_solid && is_step_for(step_count, kSolidInterval, method.courant)) {
+  if (domain.in_solid && is_step_for(step_count, kSolidInterval, method.courant)) {
     leaving_ |= somebody_in_a_solid();
   }
   return leaving_ || is_step_for(step_count, kOrderLifetime, method.courant);
@@ -91,7 +91,7 @@ bool Engine<T>::remove() {
   const std::size_t before = particle_count;
   for (std::size_t s = 0; s < particles.size(); ++s) {
     if (particles.id[s] < 0.0) continue;
-    const auto cause = cause_to_remove(method, particles, s, time);
+    const auto cause = cause_to_remove(method, domain, particles, s, time);
     if (!cause) continue;
     removed.push_back(record_of(particles, s, *cause, step_count, time));
     particles.id[s] = kNobody;

@@ -11,7 +11,7 @@ PairScales Engine<T>::scales() const {
   k.inverse_density = 1.0 / method.reference_density;
   if (keeps_diffused(method)) {
     k.hydrostatic = method.gravity / (method.sound_speed * method.sound_speed);
-    k.hydrostatic_middle = k.hydrostatic.dot(method.domain.min + method.domain.max) / 2.0;
+    k.hydrostatic_middle = k.hydrostatic.dot(domain.box.min + domain.box.max) / 2.0;
   }
   k.grid = &grid_;
   k.origin_cell = bounds.origin_cell.data();

@@ -1,10 +1,11 @@
 #include "engine/sph/solver/machine_speed.hpp"
 
 #include <algorithm>
-#include <array>
 #include <ctime>
 #include <mutex>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,20 +30,23 @@ double processor_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// The choices that the cost of a step depends on.
-std::array<double, 12> cost_of(const Method& m) {
-  return {static_cast<double>(m.kernel),
-          static_cast<double>(m.integrator),
-          static_cast<double>(m.precision),
-          m.smoothing_length / m.spacing,
-          m.diffusion ? 1.0 + static_cast<double>(m.diffusion->kind) : 0.0,
-          m.viscosity.has_value() ? 1.0 : 0.0,
-          m.viscosity && m.viscosity->beta > 0.0 ? 1.0 : 0.0,
-          m.wall_artificial_viscosity.has_value() ? 1.0 : 0.0,
-          m.laminar_viscosity.has_value() ? 1.0 : 0.0,
-          m.wall_shear.has_value() ? 1.0 : 0.0,
-          m.shifting.has_value() ? 1.0 : 0.0,
-          m.reinitialisation ? m.reinitialisation->interval : 0.0};
+/// The choices that the cost of a step depends on: of a term, whether it is there, its form, and
+/// its words and intervals, but not its strength.
+std::vector<double> cost_of(const Method& m) {
+  std::vector<double> cost{static_cast<double>(m.kernel), static_cast<double>(m.integrator),
+                           static_cast<double>(m.precision), m.smoothing_length / m.spacing};
+  for_each_term(AllTerms{}, [&]<class Term>() {
+    const auto& term = m.term<Term>();
+    const auto add = [&](const auto& parameter) {
+      using Value = std::remove_cvref_t<decltype((*term).*parameter.member)>;
+      if constexpr (!std::is_same_v<Value, double>) {
+        cost.push_back(term ? static_cast<double>((*term).*parameter.member) : 0.0);
+      }
+    };
+    cost.push_back(term ? 1.0 + form_of(*term) : 0.0);
+    std::apply([&](const auto&... each) { (add(each), ...); }, Term::kParameters);
+  });
+  return cost;
 }
 
 /// The same scheme for particles one unit apart, at rest without gravity.
@@ -52,9 +56,6 @@ Method unit_method(const Method& wanted) {
   m.spacing = m.sound_speed = m.reference_density = 1.0;
   m.gravity = Vec::Zero();
   if (m.laminar_viscosity) m.laminar_viscosity->nu = 1e-3;
-  m.gate.reset();
-  m.wall_top.reset();
-  m.domain = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
   return m;
 }
 
@@ -75,7 +76,9 @@ Solver small_tank(const Method& method, std::string_view simd) {
       p.density_excess.push_back(0.0);
     }
   }
-  return {method, state, walls, {1, std::string(simd)}};
+  FlowDomain domain;
+  domain.box = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
+  return {method, domain, state, walls, {1, std::string(simd)}};
 }
 
 double measure(const Method& method, std::string_view simd) {
@@ -99,7 +102,7 @@ double measure(const Method& method, std::string_view simd) {
 }  // namespace
 
 double particle_steps_per_core_second(const Method& method, std::string_view simd) {
-  using Known = std::pair<std::pair<std::array<double, 12>, std::string>, double>;
+  using Known = std::pair<std::pair<std::vector<double>, std::string>, double>;
   static std::mutex mutex;
   static std::vector<Known> known;
   const std::pair cost{cost_of(method), std::string(simd)};

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/sph/kernel/kernel.hpp"
 #include "engine/sph/method/equation_of_state.hpp"
-#include "engine/sph/method/kernel.hpp"
 
 namespace sluice {
 namespace {
@@ -71,9 +71,10 @@ Probe FluidProbe::surface_height(double x) const {
   const double support = method_.support();
   const double volume = method_.spacing * method_.spacing / (h * h);
   std::vector<Vec> column;
-  const Box whole{{x - support, method_.domain.min.y()}, {x + support, method_.domain.max.y()}};
+  const Box whole{{x - support, domain_.box.min.y()}, {x + support, domain_.box.max.y()}};
   for_each_in(whole, [&](std::size_t s) {
-    if (std::abs(particles_.position[0][s] - x) < support) column.push_back(particles_.position_of(s));
+    if (std::abs(particles_.position[0][s] - x) < support)
+      column.push_back(particles_.position_of(s));
   });
   // Highest first, so that the search ends at the surface; what lies deeper is never sorted.
   const auto lower = [](const Vec& a, const Vec& b) {

@@ -11,9 +11,10 @@ namespace sluice {
 /// Values of the fluid at a point, from the particles around it. Finds them by the order in memory.
 class FluidProbe {
  public:
-  FluidProbe(const Method& method, const Particles& particles, const Layout& layout,
-             const ClusterBounds& bounds, SumAround sum_around)
+  FluidProbe(const Method& method, const FlowDomain& domain, const Particles& particles,
+             const Layout& layout, const ClusterBounds& bounds, SumAround sum_around)
       : method_(method),
+        domain_(domain),
         particles_(particles),
         layout_(layout),
         bounds_(bounds),
@@ -35,6 +36,7 @@ class FluidProbe {
   void for_each_in(const Box& box, const Body& body) const;
 
   const Method& method_;
+  const FlowDomain& domain_;
   const Particles& particles_;
   const Layout& layout_;
   const ClusterBounds& bounds_;

@@ -16,11 +16,11 @@ std::string_view to_string(Pass pass) {
   return names[static_cast<std::size_t>(pass)];
 }
 
-Solver::Solver(const Method& method, const SolverState& state, const std::vector<Vec>& walls,
-               const Execution& execution)
+Solver::Solver(const Method& method, const FlowDomain& domain, const SolverState& state,
+               const std::vector<Vec>& walls, const Execution& execution)
     : impl_(method.precision == Precision::mixed
-                ? make_engine<float>(method, state, walls, execution)
-                : make_engine<double>(method, state, walls, execution)) {}
+                ? make_engine<float>(method, domain, state, walls, execution)
+                : make_engine<double>(method, domain, state, walls, execution)) {}
 Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;

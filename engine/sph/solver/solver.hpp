@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/sph/method/flow_domain.hpp"
 #include "engine/sph/method/method.hpp"
 #include "engine/sph/method/particles.hpp"
 
@@ -50,15 +51,15 @@ struct Probe {
 };
 
 /// The WCSPH solver: particles, walls and the passes of a step, chosen once for the terms of
-/// `Method`. Results depend on `Method`, the initial state and the SIMD target only; any number of
-/// threads gives the same bits.
+/// `Method`. Results depend on `Method`, `FlowDomain`, the initial state and the SIMD target only;
+/// any number of threads gives the same bits.
 class Solver {
  public:
   /// Starts from particles at rest in time (`state.step == 0`, only x, y, vx, vy, density_excess
   /// and id filled) or goes on from a state taken by `state()`. `walls` are the positions of the
   /// dummy particles, m.
-  Solver(const Method& method, const SolverState& state, const std::vector<Vec>& walls,
-         const Execution& execution);
+  Solver(const Method& method, const FlowDomain& domain, const SolverState& state,
+         const std::vector<Vec>& walls, const Execution& execution);
   ~Solver();
   Solver(Solver&&) noexcept;
   Solver& operator=(Solver&&) noexcept;

@@ -67,13 +67,13 @@ void Engine<T>::step_kick_drift_kick() {
                     [&](const ParticleSpan& chunk, const Rates<T>& rates, Motion& seen) {
                       for_blocks(chunk, [&](const ParticleSpan& p) {
                         sweeps_.updates.kick(p, rates, time_step);
-                        sweeps_.updates.measure(p, method, seen);
+                        sweeps_.updates.measure(p, method, domain, seen);
                         sweeps_.updates.measure_acceleration(p, seen);
                       });
                     }));
   time += time_step;
   ++step_count;
-  walls_.lift(method, time);
+  walls_.lift(domain.gate, time);
   if (order_due()) sort();
 }
 

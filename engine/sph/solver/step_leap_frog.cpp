@@ -24,7 +24,7 @@ void Engine<T>::step_leap_frog() {
     const Rates<T> rates = rates_of(chunk, kRateSums);
     for_blocks(chunk, [&](const ParticleSpan& p) {
       sweeps_.updates.leap_frog(p, rates, 0.5 * (last + time_step), time_step);
-      sweeps_.updates.measure(p, method, seen);
+      sweeps_.updates.measure(p, method, domain, seen);
       write_pairs(p);
       compare_with_paths(p, seen);
     });
@@ -32,7 +32,7 @@ void Engine<T>::step_leap_frog() {
   note_motion(motion);
   time += time_step;
   ++step_count;
-  walls_.lift(method, time);
+  walls_.lift(domain.gate, time);
   order_due() ? sort() : keep_lists(motion);
 }
 

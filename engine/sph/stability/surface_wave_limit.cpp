@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 
 namespace sluice {
 namespace {
@@ -31,7 +31,7 @@ void add(const RowPair& pair, const Method& m, double approaching, SheetWave& w)
   const double epsilon = m.viscosity ? m.viscosity->epsilon : 0.0;
   const double delta = m.diffusion ? m.diffusion->delta : 0.0;
   const double drag = approaching * alpha * pair.weight / (pair.distance.squaredNorm() + epsilon);
-  const double shear = m.scaled_two_nu() * pair.weight;
+  const double shear = scaled_two_nu(m.laminar_viscosity, m) * pair.weight;
   for (Eigen::Index a = 0; a < 2; ++a) {
     w.damping(2 * i + a, 2 * i + a) += shear;
     w.damping(2 * i + a, 2 * j + a) -= shear * pair.phase;

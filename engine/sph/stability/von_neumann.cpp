@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 
 namespace sluice {
 namespace {
@@ -71,7 +71,7 @@ LatticeStability::LatticeStability(const Method& method, Surface surface)
     epsilon_ = method.viscosity->epsilon;
   }
   if (method.diffusion) delta_ = method.diffusion->delta;
-  two_nu_ = method.scaled_two_nu();
+  two_nu_ = scaled_two_nu(method.laminar_viscosity, method);
 
   const double support = method.support_ratio();
   const int reach = static_cast<int>(support / spacing_) + 1;

@@ -241,7 +241,7 @@ void snapshot_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.attribute("/", "time", frame.time);
   if (version > 1) {
     for (std::size_t axis = 0; axis < frame.position.size(); ++axis) {
-      archive.attribute("/", "origin_" + std::string(kAxisNames[axis]),
+      archive.attribute("/", "origin_" + std::string(axis_name(static_cast<Eigen::Index>(axis))),
                         frame.origin[static_cast<Eigen::Index>(axis)]);
     }
   }

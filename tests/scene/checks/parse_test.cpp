@@ -50,8 +50,8 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
 
   const Method& m = s.method;
   EXPECT_EQ(m.gravity, Vec(0, -9.81));
-  EXPECT_EQ(m.domain.min, Vec(-1, -1));
-  EXPECT_EQ(m.domain.max, Vec(3, 2));
+  EXPECT_EQ(s.domain.box.min, Vec(-1, -1));
+  EXPECT_EQ(s.domain.box.max, Vec(3, 2));
   EXPECT_EQ(m.reference_density, 998.2);
   EXPECT_EQ(m.sound_speed, 50);
   EXPECT_EQ(m.spacing, 0.05);
@@ -102,7 +102,7 @@ TEST(ParseScene, RefusesWhatFollowsAZeroByte) {
 
 TEST(ParseScene, LeavesOutWhatHasNoKey) {
   const Scene s = parsed(base_scene());
-  EXPECT_FALSE(s.method.gate);
+  EXPECT_FALSE(s.domain.gate);
   EXPECT_TRUE(s.sensors.empty());
   EXPECT_TRUE(s.obstacles.empty());
   EXPECT_FALSE(s.frames || s.scales);
@@ -113,12 +113,12 @@ TEST(ParseScene, TurnsAGateIntoAWallOfThreeSpacingsThatIsLifted) {
   text["gate"] = {{"x", 1.0}, {"speed", 3.46}};
   text["numerics"] = {{"scheme", "recommended"}, {"laminar_viscosity", {{"nu", 1e-4}}}};
   const Scene s = parsed(text);
-  ASSERT_TRUE(s.gate && s.method.gate && s.method.laminar_viscosity);
+  ASSERT_TRUE(s.gate && s.domain.gate && s.method.laminar_viscosity);
   EXPECT_EQ(s.gate->height, 1.0) << "the tank's";
-  EXPECT_EQ(s.method.gate->place.min, Vec(1.0, 0.0));
-  EXPECT_NEAR(s.method.gate->place.max.x(), 1.15, 1e-12);
-  EXPECT_EQ(s.method.gate->place.max.y(), 1.0);
-  EXPECT_EQ(s.method.gate->speed, 3.46);
+  EXPECT_EQ(s.domain.gate->place.min, Vec(1.0, 0.0));
+  EXPECT_NEAR(s.domain.gate->place.max.x(), 1.15, 1e-12);
+  EXPECT_EQ(s.domain.gate->place.max.y(), 1.0);
+  EXPECT_EQ(s.domain.gate->speed, 3.46);
   EXPECT_EQ(s.method.laminar_viscosity->nu, 1e-4);
 }
 
@@ -177,11 +177,11 @@ TEST(ParseScene, PutsAColumnHeightAtTheLeftWall) {
 }
 
 TEST(ParseScene, DrawsADomainAroundTankWallsAndTheRoomAbove) {
-  const Method m = parsed(base_scene()).method;
-  EXPECT_LE(m.domain.min.x(), -0.15);
-  EXPECT_LE(m.domain.min.y(), -0.15);
-  EXPECT_GE(m.domain.max.x(), 2.15);
-  EXPECT_GE(m.domain.max.y(), 1 + 0.5);
+  const Box domain = parsed(base_scene()).domain.box;
+  EXPECT_LE(domain.min.x(), -0.15);
+  EXPECT_LE(domain.min.y(), -0.15);
+  EXPECT_GE(domain.max.x(), 2.15);
+  EXPECT_GE(domain.max.y(), 1 + 0.5);
 }
 
 TEST(ParseScene, DrawsADomainAroundTheWholeFlightOfADrop) {
@@ -189,7 +189,7 @@ TEST(ParseScene, DrawsADomainAroundTheWholeFlightOfADrop) {
   json text = testing::free_scene(
       {{"shape", "circle"}, {"center", {0, 0}}, {"radius", 0.2}, {"velocity", {2, 3}}});
   text["gravity"] = {0, -9.81};
-  const Box domain = parsed(text).method.domain;
+  const Box domain = parsed(text).domain.box;
   EXPECT_LT(domain.min.x(), -0.2);
   EXPECT_GT(domain.max.x(), 2.2);
   EXPECT_GT(domain.max.y(), 9 / 19.62 + 0.2);
@@ -198,9 +198,9 @@ TEST(ParseScene, DrawsADomainAroundTheWholeFlightOfADrop) {
 
 TEST(ParseScene, DrawsADomainAroundWhatAStrainedDropReaches) {
   json text = testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 0.2}});
-  const Box at_rest = parsed(text).method.domain;
+  const Box at_rest = parsed(text).domain.box;
   text["fluid"][0]["strain_rate"] = -5;
-  const Box strained = parsed(text).method.domain;
+  const Box strained = parsed(text).domain.box;
   // The pole moves at |A| R for 1 s.
   EXPECT_GE(strained.max.y(), at_rest.max.y() + 5 * 0.2);
   EXPECT_LE(strained.min.x(), at_rest.min.x() - 5 * 0.2);
@@ -216,11 +216,11 @@ TEST(ParseScene, RefusesARotationFasterThanSound) {
 
 TEST(ParseScene, MarksTheRimOfAnOpenTankOnly) {
   json text = base_scene();
-  EXPECT_EQ(parsed(text).method.wall_top, 1.0);
+  EXPECT_EQ(parsed(text).domain.wall_top, 1.0);
   text["tank"]["open_top"] = false;
-  EXPECT_FALSE(parsed(text).method.wall_top);
+  EXPECT_FALSE(parsed(text).domain.wall_top);
   EXPECT_FALSE(parsed(testing::free_scene({{"shape", "circle"}, {"center", {0, 0}}, {"radius", 1}}))
-                   .method.wall_top);
+                   .domain.wall_top);
 }
 
 TEST(ParseScene, NamesAllProblemsAtOnce) {

@@ -44,7 +44,7 @@ TEST(InitialParticles, StandBehindAGateOfThreeLayersOfWallParticles) {
   EXPECT_EQ(made.state.particles.size(), 200U) << "the column touches the gate, no more";
   ASSERT_EQ(made.walls.size(), without + 3 * 12);
   for (std::size_t i = 0; i < made.walls.size(); ++i) {
-    EXPECT_EQ(scene.method.gate->place.contains(made.walls[i]), i >= without);
+    EXPECT_EQ(scene.domain.gate->place.contains(made.walls[i]), i >= without);
   }
   EXPECT_GT(testing::smallest_distance(made.walls), 0.049);
 }

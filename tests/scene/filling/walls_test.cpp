@@ -133,13 +133,14 @@ TEST(ObstacleWalls, OfOverlappingObstaclesStandOnce) {
 
 TEST(Rim, IsTheMiddleOfTheWallsHoweverThickTheyAre) {
   nlohmann::json text = testing::base_scene();
-  EXPECT_DOUBLE_EQ(testing::parsed(text).method.rim_left, -1.5 * 0.05);
+  EXPECT_DOUBLE_EQ(testing::parsed(text).domain.rim_left, -1.5 * 0.05);
   text["resolution"]["smoothing_ratio"] = 1.3;  // walls of four layers
   text["numerics"] = {{"scheme", "paper"}, {"courant", 0.1}};
-  const Method method = testing::parsed(text).method;
-  ASSERT_EQ(wall_layers(method) % 2, 0);
-  EXPECT_DOUBLE_EQ(method.rim_left, -0.5 * 0.05 * static_cast<double>(wall_layers(method)));
-  EXPECT_DOUBLE_EQ(method.rim_right, 2.0 - method.rim_left);
+  const Scene scene = testing::parsed(text);
+  const std::int64_t layers = wall_layers(scene.method);
+  ASSERT_EQ(layers % 2, 0);
+  EXPECT_DOUBLE_EQ(scene.domain.rim_left, -0.5 * 0.05 * static_cast<double>(layers));
+  EXPECT_DOUBLE_EQ(scene.domain.rim_right, 2.0 - scene.domain.rim_left);
 }
 
 }  // namespace

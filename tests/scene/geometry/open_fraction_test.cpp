@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 #include "tests/scene/support.hpp"
 
 namespace sluice {

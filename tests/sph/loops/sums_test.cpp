@@ -17,10 +17,10 @@ namespace {
 /// coordinates (up to 20 h) and of the kernel, which single precision states as 9e-7.
 double tolerance(Precision precision) { return precision == Precision::mixed ? 1e-5 : 1e-11; }
 
-std::vector<Method> all_combinations_of_terms(KernelKind kernel) {
-  std::vector<Method> methods;
+std::vector<TestMethod> all_combinations_of_terms(KernelKind kernel) {
+  std::vector<TestMethod> methods;
   for (int mask = 0; mask < 4 * 24; ++mask) {
-    Method m = full_method();
+    TestMethod m = full_method();
     m.reinitialisation.reset();
     m.kernel = kernel;
     if (mask % 3 == 0) m.diffusion.reset();
@@ -50,7 +50,7 @@ Scene perturbed_tank(std::uint64_t seed) {
   return {random_block(dice, corner, 13, 9, 0.1, 0.3, 2.0, 20.0), walls_around(corner, 13, 9, 0.1)};
 }
 
-std::string describe(const Method& m, const std::string& target) {
+std::string describe(const TestMethod& m, const std::string& target) {
   return target + ", " + name_of(m.precision) + ", " + name_of(m.integrator) + ", kernel " +
          std::to_string(static_cast<int>(m.kernel)) + ", diffusion " +
          (m.diffusion ? std::to_string(static_cast<int>(m.diffusion->kind)) : "none") +
@@ -71,11 +71,11 @@ std::vector<double> rate_between(const std::vector<double>& before,
 }
 
 /// The rates at the start, out of one leap-frog step: its first kick moves both by rate times dt.
-void expect_leap_frog_sums(const Method& m, const Scene& scene, const std::string& target,
+void expect_leap_frog_sums(const TestMethod& m, const Scene& scene, const std::string& target,
                            const std::vector<double>& pressure, const PlainRates& expected) {
   const std::string what = describe(m, target);
   const double eps = tolerance(m.precision);
-  Solver solver(m, start_from(scene.fluid), scene.walls, {1, target});
+  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
   solver.step();
   const Fluid after = fluid_of(solver.state());
   std::vector<Vec> a;
@@ -90,11 +90,11 @@ void expect_leap_frog_sums(const Method& m, const Scene& scene, const std::strin
 }
 
 /// Kick-drift-kick keeps the acceleration; its density rate is taken half a step later.
-void expect_kick_drift_kick_sums(const Method& m, const Scene& scene, const std::string& target,
+void expect_kick_drift_kick_sums(const TestMethod& m, const Scene& scene, const std::string& target,
                                  const std::vector<double>& pressure, const PlainRates& expected) {
   const std::string what = describe(m, target);
   const double eps = tolerance(m.precision);
-  Solver solver(m, start_from(scene.fluid), scene.walls, {1, target});
+  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
   expect_near(solver.wall_pressures(), pressure, eps * 2e4, what + ": wall pressure");
   const SolverState start = solver.state();
   const auto ax = by_id(start, {&Particles::acceleration, 0});
@@ -111,7 +111,7 @@ void expect_kick_drift_kick_sums(const Method& m, const Scene& scene, const std:
               eps * later.density_size, what + ": density rate");
 }
 
-void expect_sums(Method m, const Scene& scene) {
+void expect_sums(TestMethod m, const Scene& scene) {
   const std::vector<double> pressure = plain_wall_pressures(m, scene.fluid, scene.walls);
   const PlainRates rates = plain_rates(m, scene.fluid, scene.walls, pressure);
   for (const std::string& target : simd_targets()) {
@@ -128,14 +128,14 @@ void expect_sums(Method m, const Scene& scene) {
 TEST(PairSums, EqualThePlainDoubleLoopForAllTermsBesideWalls) {
   const Scene scene = perturbed_tank(1);
   for (const KernelKind kernel : kKernels) {
-    for (const Method& m : all_combinations_of_terms(kernel)) expect_sums(m, scene);
+    for (const TestMethod& m : all_combinations_of_terms(kernel)) expect_sums(m, scene);
   }
 }
 
 TEST(PairSums, EqualThePlainDoubleLoopForAllTermsWithoutWalls) {
   const Scene scene{perturbed_tank(2).fluid, {}};
   for (const KernelKind kernel : kKernels) {
-    for (const Method& m : all_combinations_of_terms(kernel)) {
+    for (const TestMethod& m : all_combinations_of_terms(kernel)) {
       if (m.wall_artificial_viscosity || m.wall_pressure == WallPressure::clamped) continue;
       expect_sums(m, scene);
     }
@@ -152,7 +152,7 @@ TEST(PairSums, EqualThePlainDoubleLoopWhereParticlesLieAtRandom) {
     }
     for (int i = 0; i < 50; ++i) scene.walls.push_back(dice.in_box({-0.9, -0.9}, {0.9, 0.9}));
     for (const KernelKind kernel : kKernels) {
-      Method m = full_method();
+      TestMethod m = full_method();
       m.reinitialisation.reset();
       m.kernel = kernel;
       expect_sums(m, scene);
@@ -163,9 +163,9 @@ TEST(PairSums, EqualThePlainDoubleLoopWhereParticlesLieAtRandom) {
 TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
   const Scene scene = perturbed_tank(5);
   // The right wall, x > 0.57 m: after 0.14 s its edge is between the fourth and the fifth row.
-  Method m = full_method();
+  TestMethod m = full_method();
   m.reinitialisation.reset();
-  m.gate = GateMotion{{{0.57, -0.51}, {0.9, 0.4}}, 3.0};
+  m.domain.gate = GateMotion{{{0.57, -0.51}, {0.9, 0.4}}, 3.0};
   SolverState state = start_from(scene.fluid);
   state.time = 0.14;
   std::vector<Vec> standing;
@@ -174,10 +174,10 @@ TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
   }
   ASSERT_LT(standing.size(), scene.walls.size());
   for (m.integrator = Integrator::modified_leap_frog;; m.integrator = Integrator::kick_drift_kick) {
-    Solver lifted(m, state, scene.walls, {});
-    Method still = m;
-    still.gate.reset();
-    Solver fewer(still, state, standing, {});
+    Solver lifted = solver_for(m, state, scene.walls, {});
+    TestMethod still = m;
+    still.domain.gate.reset();
+    Solver fewer = solver_for(still, state, standing, {});
     lifted.step();
     fewer.step();
     const Fluid a = fluid_of(lifted.state());
@@ -189,7 +189,7 @@ TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
 }
 
 TEST(PairSums, AWallParticleWithoutFluidNearHasNoPressure) {
-  Method m = full_method();
+  TestMethod m = full_method();
   Fluid fluid;
   fluid.add({0.0, 0.0}, {0.0, 0.0}, 5.0);
   const double edge = m.support();
@@ -197,7 +197,7 @@ TEST(PairSums, AWallParticleWithoutFluidNearHasNoPressure) {
   for (const Precision precision : kPrecisions) {
     m.precision = precision;
     m.integrator = Integrator::kick_drift_kick;
-    const Solver solver(m, start_from(fluid), walls, {});
+    const Solver solver = solver_for(m, start_from(fluid), walls, {});
     const auto pressure = solver.wall_pressures();
     EXPECT_EQ(pressure[0], 0.0);
     EXPECT_GT(pressure[1], 0.0);
@@ -206,9 +206,9 @@ TEST(PairSums, AWallParticleWithoutFluidNearHasNoPressure) {
 }
 
 /// The leap-frog reinitialises at the start of a step, both time levels by the same increment.
-void expect_leap_frog_reinitialisation(const Method& m, const Scene& scene) {
+void expect_leap_frog_reinitialisation(const TestMethod& m, const Scene& scene) {
   const double eps = tolerance(m.precision);
-  Solver solver(m, start_from(scene.fluid), scene.walls, {});
+  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {});
   solver.step();
   const SolverState first = solver.state();
   Fluid fluid = fluid_of(first);
@@ -234,12 +234,12 @@ void expect_leap_frog_reinitialisation(const Method& m, const Scene& scene) {
 }
 
 /// Kick-drift-kick reinitialises at the end of a step, before the acceleration.
-void expect_kick_drift_kick_reinitialisation(const Method& m, const Scene& scene) {
+void expect_kick_drift_kick_reinitialisation(const TestMethod& m, const Scene& scene) {
   const double eps = tolerance(m.precision);
-  Method without = m;
+  TestMethod without = m;
   without.reinitialisation.reset();
-  Solver plain(without, start_from(scene.fluid), scene.walls, {});
-  Solver solver(m, start_from(scene.fluid), scene.walls, {});
+  Solver plain = solver_for(without, start_from(scene.fluid), scene.walls, {});
+  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {});
   plain.step();
   solver.step();
   Fluid fluid = fluid_of(plain.state());
@@ -268,7 +268,7 @@ TEST(PairSums, ReinitialisationEqualsThePlainDoubleLoop) {
     if (!walls) scene.walls.clear();
     for (const KernelKind kernel : kKernels) {
       for (const Precision precision : kPrecisions) {
-        Method m = full_method();
+        TestMethod m = full_method();
         m.kernel = kernel;
         m.precision = precision;
         m.reinitialisation = Reinitialisation{1};

@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kSteps = 100;
 
-Method free_method(Integrator integrator) {
-  Method m = full_method();
+TestMethod free_method(Integrator integrator) {
+  TestMethod m = full_method();
   m.integrator = integrator;
   m.gravity.setZero();
   m.wall_artificial_viscosity.reset();
@@ -46,8 +46,8 @@ Momentum momentum_of(const SolverState& state) {
 }
 
 /// Rounding: 144 particles of some 3 m/s and 100 steps whose kicks reach 1 m/s.
-void expect_momentum_kept(const Method& m, double tolerance) {
-  Solver solver(m, start_from(moving_block()), {}, {});
+void expect_momentum_kept(const TestMethod& m, double tolerance) {
+  Solver solver = solver_for(m, start_from(moving_block()), {}, {});
   solver.step();
   const Momentum before = momentum_of(solver.state());
   run_steps(solver, kSteps);
@@ -60,7 +60,7 @@ void expect_momentum_kept(const Method& m, double tolerance) {
 TEST(Conservation, LinearAndAngularMomentumAreKeptToRoundingInDouble) {
   for (const KernelKind kernel : kKernels) {
     for (const Integrator integrator : kIntegrators) {
-      Method m = free_method(integrator);
+      TestMethod m = free_method(integrator);
       m.kernel = kernel;
       expect_momentum_kept(m, 1e-11);
     }
@@ -69,7 +69,7 @@ TEST(Conservation, LinearAndAngularMomentumAreKeptToRoundingInDouble) {
 
 TEST(Conservation, MixedPrecisionKeepsMomentumToItsRounding) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = free_method(integrator);
+    TestMethod m = free_method(integrator);
     m.precision = Precision::mixed;
     expect_momentum_kept(m, 1e-3);
   }
@@ -77,11 +77,11 @@ TEST(Conservation, MixedPrecisionKeepsMomentumToItsRounding) {
 
 TEST(Conservation, ViscosityTakesEnergyOutAndNeverPutsAnyIn) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = free_method(integrator);
+    TestMethod m = free_method(integrator);
     m.diffusion.reset();
     m.reinitialisation.reset();
     m.viscosity->alpha = 0.2;
-    Solver solver(m, start_from(moving_block()), {}, {});
+    Solver solver = solver_for(m, start_from(moving_block()), {}, {});
     const double start = solver.energy().total();
     double last = start;
     for (int n = 0; n < kSteps; ++n) {
@@ -98,14 +98,14 @@ TEST(Conservation, ViscosityTakesEnergyOutAndNeverPutsAnyIn) {
 
 TEST(Conservation, EnergyOfAnInviscidDropIsKeptByKickDriftKick) {
   // A smooth start: what the scheme exchanges between kinetic and internal energy it keeps.
-  Method m = free_method(Integrator::kick_drift_kick);
+  TestMethod m = free_method(Integrator::kick_drift_kick);
   m.viscosity.reset();
   m.diffusion.reset();
   m.reinitialisation.reset();
   Dice dice(3);
   Fluid fluid = random_block(dice, {-1.0, -1.0}, 20, 20, 0.1, 0.0, 0.0, 0.0);
   for (std::size_t i = 0; i < fluid.size(); ++i) fluid.v[i] = {-fluid.x[i].x(), fluid.x[i].y()};
-  Solver solver(m, start_from(fluid), {}, {});
+  Solver solver = solver_for(m, start_from(fluid), {}, {});
   const double start = solver.energy().total();
   run_steps(solver, kSteps);
   EXPECT_NEAR(solver.energy().total(), start, 0.01 * start);

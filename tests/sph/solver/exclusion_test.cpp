@@ -17,8 +17,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBad = 44;
 
-Method method_of(Integrator integrator, Precision precision) {
-  Method m = full_method();
+TestMethod method_of(Integrator integrator, Precision precision) {
+  TestMethod m = full_method();
   m.integrator = integrator;
   m.precision = precision;
   return m;
@@ -57,14 +57,14 @@ const Fault kFaults[] = {
 TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
-      const Method m = method_of(integrator, precision);
+      const TestMethod m = method_of(integrator, precision);
       const SolverState good = start_from(block());
-      Solver expected(m, without(good, kBad), {}, {});
+      Solver expected = solver_for(m, without(good, kBad), {}, {});
       run_steps(expected, 40);
       for (const Fault& fault : kFaults) {
         SolverState bad = good;
         fault.field.of(bad.particles)[kBad] = fault.value;
-        Solver solver(m, bad, {}, {});
+        Solver solver = solver_for(m, bad, {}, {});
         ASSERT_EQ(solver.removed().size(), 1U);
         EXPECT_EQ(solver.removed()[0].id, static_cast<double>(kBad));
         EXPECT_EQ(solver.removed()[0].cause, fault.cause) << fault.value;
@@ -81,8 +81,8 @@ TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
 
 /// A state under way in which one particle has just gone wrong: what its half steps make of it is
 /// wrong at the end of the next step.
-SolverState gone_wrong(const Method& m, std::size_t steps) {
-  Solver solver(m, start_from(block()), {}, {});
+SolverState gone_wrong(const TestMethod& m, std::size_t steps) {
+  Solver solver = solver_for(m, start_from(block()), {}, {});
   while (solver.step_count() < steps) solver.step();
   SolverState state = solver.state();
   Particles& p = state.particles;
@@ -98,10 +98,10 @@ SolverState gone_wrong(const Method& m, std::size_t steps) {
 TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
-      const Method m = method_of(integrator, precision);
+      const TestMethod m = method_of(integrator, precision);
       const SolverState start = gone_wrong(m, 7);
       for (const std::string& target : simd_targets()) {
-        Solver whole(m, start, {}, {1, target});
+        Solver whole = solver_for(m, start, {}, {1, target});
         run_steps(whole, 60);
         ASSERT_GT(whole.removed().size(), 0U) << "nobody excluded: this test proves nothing";
         EXPECT_LT(whole.removed().size(), 20U);
@@ -110,9 +110,9 @@ TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
         EXPECT_GT(at, 7U) << "excluded when it was loaded";
         for (const std::uint64_t stop : {at - 1, at, at + 1}) {
           for (const int threads : {2, 3, 8}) {
-            Solver first(m, start, {}, {threads, target});
+            Solver first = solver_for(m, start, {}, {threads, target});
             while (first.step_count() < stop) first.step();
-            Solver second(m, first.state(), {}, {1, target});
+            Solver second = solver_for(m, first.state(), {}, {1, target});
             EXPECT_EQ(second.extremes().max_speed, first.extremes().max_speed);
             EXPECT_EQ(second.extremes().max_density_excess, first.extremes().max_density_excess);
             EXPECT_EQ(second.extremes().max_x, first.extremes().max_x);
@@ -127,8 +127,8 @@ TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
 
 TEST(Exclusion, TakesTheExtremesOfTheOthers) {
   for (const Integrator integrator : kIntegrators) {
-    const Method m = method_of(integrator, Precision::double_precision);
-    Solver solver(m, gone_wrong(m, 7), {}, {});
+    const TestMethod m = method_of(integrator, Precision::double_precision);
+    Solver solver = solver_for(m, gone_wrong(m, 7), {}, {});
     const auto bound = [&] {
       return solver.extremes().max_speed <= m.sound_speed &&
              std::abs(solver.extremes().max_density_excess) <= m.most_density_excess();
@@ -151,12 +151,12 @@ TEST(Exclusion, TakesTheExtremesOfTheOthers) {
 TEST(Exclusion, DoesNotShortenTheStepForAParticleThatIsThrownAbout) {
   // 0.25 sqrt(h/a) would be a thousandth of h/c.
   for (const Integrator integrator : kIntegrators) {
-    Method m = plain_method();
+    TestMethod m = plain_method();
     m.integrator = integrator;
     m.gravity = {0.0, -6.25e4 * m.sound_speed * m.sound_speed / m.smoothing_length};
     Fluid fluid;
     fluid.add({0.0, 0.0});
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     run_steps(solver, 2);
     EXPECT_DOUBLE_EQ(m.least_time_step(), 0.05 * m.smoothing_length / m.sound_speed);
     EXPECT_EQ(solver.particle_count(), 0U);
@@ -166,7 +166,7 @@ TEST(Exclusion, DoesNotShortenTheStepForAParticleThatIsThrownAbout) {
 }
 
 TEST(Exclusion, BooksMassMomentumAndEnergy) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.gravity = {2.0, -3.0};
   SolverState state = start_from(block());
   Particles& p = state.particles;
@@ -174,7 +174,7 @@ TEST(Exclusion, BooksMassMomentumAndEnergy) {
   p.velocity[0][kBad] = 3.0;
   p.velocity[1][kBad] = -4.0;
   const Vec place = p.position_of(kBad);
-  const Solver solver(m, state, {}, {});
+  const Solver solver = solver_for(m, state, {}, {});
   ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
   departed.add(m, solver.removed()[0]);
@@ -194,7 +194,7 @@ TEST(Exclusion, KeepsNoNumberThatIsNone) {
   state.particles.position[0][kBad] = kNan;
   state.particles.velocity[0][kBad] = kInfinity;
   state.particles.density_excess[kBad] = kNan;
-  const Solver solver(plain_method(), state, {}, {});
+  const Solver solver = solver_for(plain_method(), state, {}, {});
   ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
   departed.add(plain_method(), solver.removed()[0]);
@@ -204,13 +204,13 @@ TEST(Exclusion, KeepsNoNumberThatIsNone) {
 
 TEST(Solids, TakeWhoIsDeepInThemForALeakWithinFourCrossings) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = plain_method();
+    TestMethod m = plain_method();
     m.integrator = integrator;
-    m.in_solid = [](const Vec& place, double) { return place.x() > 0.5; };
+    m.domain.in_solid = [](const Vec& place, double) { return place.x() > 0.5; };
     Fluid fluid;
     fluid.add({0.0, 0.0}, {10.0, 0.0});
     fluid.add({-1.0, 0.0}, {-1.0, 0.0});
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     while (solver.removed().empty() && solver.step_count() < 200) solver.step();
     ASSERT_EQ(solver.removed().size(), 1U);
     EXPECT_EQ(solver.removed()[0].id, 0.0);
@@ -221,19 +221,19 @@ TEST(Solids, TakeWhoIsDeepInThemForALeakWithinFourCrossings) {
 }
 
 TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
-  Method m = plain_method();
-  m.room = {{-1.0, -1.0}, {1.0, kInfinity}};
-  m.wall_top = 0.5;
-  m.walls_reach = 0.4;
-  m.rim_left = -1.2;
-  m.rim_right = 1.2;
-  EXPECT_TRUE(m.keeps({0.0, 0.0}));
-  EXPECT_FALSE(m.keeps({1.1, 0.0}));
-  EXPECT_FALSE(m.keeps({0.0, -1.1}));
-  EXPECT_TRUE(m.keeps({1.1, 0.6})) << "over the wall, before its middle";
-  EXPECT_TRUE(m.keeps({1.1, 0.45})) << "it lies on the wall";
-  EXPECT_FALSE(m.keeps({1.3, 0.6}));
-  EXPECT_FALSE(m.keeps({1.3, 0.45})) << "it has run over the wall";
+  TestMethod m = plain_method();
+  m.domain.room = {{-1.0, -1.0}, {1.0, kInfinity}};
+  m.domain.wall_top = 0.5;
+  m.domain.walls_reach = 0.4;
+  m.domain.rim_left = -1.2;
+  m.domain.rim_right = 1.2;
+  EXPECT_TRUE(m.domain.keeps({0.0, 0.0}));
+  EXPECT_FALSE(m.domain.keeps({1.1, 0.0}));
+  EXPECT_FALSE(m.domain.keeps({0.0, -1.1}));
+  EXPECT_TRUE(m.domain.keeps({1.1, 0.6})) << "over the wall, before its middle";
+  EXPECT_TRUE(m.domain.keeps({1.1, 0.45})) << "it lies on the wall";
+  EXPECT_FALSE(m.domain.keeps({1.3, 0.6}));
+  EXPECT_FALSE(m.domain.keeps({1.3, 0.45})) << "it has run over the wall";
   for (const Integrator integrator : kIntegrators) {
     m.integrator = integrator;
     Fluid fluid;
@@ -241,7 +241,7 @@ TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
          {Vec(0.0, 0.0), Vec(1.1, 0.0), Vec(0.0, -1.1), Vec(1.1, 0.6), Vec(1.3, 0.45)}) {
       fluid.add(place);
     }
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     ASSERT_EQ(solver.removed().size(), 3U);
     for (const RemovedParticle& each : solver.removed()) {
       EXPECT_EQ(each.cause, each.id == 4.0 ? RemovalCause::overtopped : RemovalCause::leaked);

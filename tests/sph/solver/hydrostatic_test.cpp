@@ -17,8 +17,8 @@ constexpr int kRows = 15;
 constexpr double kDepth = kRows * kDx;
 const Vec kCorner(-0.8, -0.7);
 
-Method still_water(Integrator integrator, Precision precision) {
-  Method m = plain_method();
+TestMethod still_water(Integrator integrator, Precision precision) {
+  TestMethod m = plain_method();
   m.gravity = {0.0, -kG};
   m.sound_speed = 10.0 * std::sqrt(2.0 * kG * kDepth);
   m.integrator = integrator;
@@ -36,7 +36,7 @@ Method still_water(Integrator integrator, Precision precision) {
 /// rho_0 g times the depth below the surface, Pa.
 double weight_above(double y) { return 1000.0 * kG * (kCorner.y() + kDepth - y); }
 
-Fluid column_at_rest(const Method& m) {
+Fluid column_at_rest(const TestMethod& m) {
   Dice dice(1);
   Fluid fluid = random_block(dice, kCorner, kColumns, kRows, kDx, 0.0, 0.0, 0.0);
   for (std::size_t i = 0; i < fluid.size(); ++i) {
@@ -47,9 +47,9 @@ Fluid column_at_rest(const Method& m) {
 
 /// Largest error of the pressure along a plumb line in the middle, in units of that at the floor,
 /// after a fall time.
-double worst_pressure_error(const Method& m) {
+double worst_pressure_error(const TestMethod& m) {
   const std::vector<Vec> walls = walls_around(kCorner, kColumns, kRows + 5, kDx);
-  Solver solver(m, start_from(column_at_rest(m)), walls, {});
+  Solver solver = solver_for(m, start_from(column_at_rest(m)), walls, {});
   while (solver.time() < std::sqrt(kDepth / kG)) solver.step();
   EXPECT_EQ(solver.particle_count(), static_cast<std::size_t>(kColumns * kRows));
   // Still: far below sqrt(g H).
@@ -76,9 +76,9 @@ TEST(StillWater, KeepsItsPressureForAShortTimeWithThePapersScheme) {
 }
 
 TEST(StillWater, PressesOnTheFloorWithItsWeightFromTheFirstStepOn) {
-  const Method m = still_water(Integrator::kick_drift_kick, Precision::double_precision);
+  const TestMethod m = still_water(Integrator::kick_drift_kick, Precision::double_precision);
   const std::vector<Vec> walls = walls_around(kCorner, kColumns, kRows + 5, kDx);
-  const Solver solver(m, start_from(column_at_rest(m)), walls, {});
+  const Solver solver = solver_for(m, start_from(column_at_rest(m)), walls, {});
   const std::vector<double> pressure = solver.wall_pressures();
   int checked = 0;
   for (std::size_t w = 0; w < walls.size(); ++w) {

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-Method falling(Integrator integrator) {
-  Method m = plain_method();
+TestMethod falling(Integrator integrator) {
+  TestMethod m = plain_method();
   m.integrator = integrator;
   m.gravity = {0.0, -kGravity};
-  m.domain = {{-50.0, -500.0}, {50.0, 50.0}};
+  m.domain.box = {{-50.0, -500.0}, {50.0, 50.0}};
   return m;
 }
 
@@ -30,9 +30,9 @@ Fluid lone_particle() {
 TEST(FreeFall, OfAnIsolatedParticleIsExactWithStepsOfAnyLength) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
-      Method m = falling(integrator);
+      TestMethod m = falling(integrator);
       m.precision = precision;
-      Solver solver(m, start_from(lone_particle()), {}, {});
+      Solver solver = solver_for(m, start_from(lone_particle()), {}, {});
       double shortest = 1.0;
       double longest = 0.0;
       for (int n = 0; n < 1500; ++n) {
@@ -55,7 +55,8 @@ TEST(FreeFall, OfAnIsolatedParticleIsExactWithStepsOfAnyLength) {
 }
 
 TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSteps) {
-  Solver solver(falling(Integrator::modified_leap_frog), start_from(lone_particle()), {}, {});
+  Solver solver =
+      solver_for(falling(Integrator::modified_leap_frog), start_from(lone_particle()), {}, {});
   double y = 1.0;
   double v_half = 5.0;
   double last = 0.0;  // before the first step: its kick is half
@@ -74,7 +75,8 @@ TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSt
 }
 
 TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
-  Solver solver(falling(Integrator::kick_drift_kick), start_from(lone_particle()), {}, {});
+  Solver solver =
+      solver_for(falling(Integrator::kick_drift_kick), start_from(lone_particle()), {}, {});
   EXPECT_EQ(solver.state().particles.acceleration[1][0], -kGravity)
       << "the first kick needs the acceleration";
   double y = 1.0;
@@ -93,7 +95,7 @@ TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
 
 TEST(Integrators, KeepOnlyTheFieldsTheyNeed) {
   for (const Integrator integrator : kIntegrators) {
-    const Solver solver(falling(integrator), start_from(lone_particle()), {}, {});
+    const Solver solver = solver_for(falling(integrator), start_from(lone_particle()), {}, {});
     const SolverState state = solver.state();
     for (const Field& field : kFields) {
       const std::size_t expected = carries(integrator, field) ? 1U : 0U;
@@ -104,7 +106,7 @@ TEST(Integrators, KeepOnlyTheFieldsTheyNeed) {
 
 TEST(Integrators, TimeIsTheSumOfTheSteps) {
   for (const Integrator integrator : kIntegrators) {
-    Solver solver(falling(integrator), start_from(lone_particle()), {}, {});
+    Solver solver = solver_for(falling(integrator), start_from(lone_particle()), {}, {});
     double sum = 0.0;
     for (std::uint64_t n = 1; n <= 30; ++n) {
       solver.step();
@@ -117,7 +119,7 @@ TEST(Integrators, TimeIsTheSumOfTheSteps) {
 
 /// Two particles that approach: their distance after 64/k steps of k times the shortest length.
 double distance_after(Integrator integrator, int k) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.integrator = integrator;
   m.courant = 0.02 * k;
   Fluid fluid;
@@ -125,7 +127,7 @@ double distance_after(Integrator integrator, int k) {
   fluid.add({0.1, 0.0}, {-0.2, 0.0}, 0.0);
   // The fastest particle is a lone one, so that all steps are equally long.
   fluid.add({-1.5, -1.5}, {1.0, 0.0}, 0.0);
-  Solver solver(m, start_from(fluid), {}, {});
+  Solver solver = solver_for(m, start_from(fluid), {}, {});
   run_steps(solver, 64 / k);
   const Fluid now = fluid_of(solver.state());
   return now.x[1].x() - now.x[0].x();

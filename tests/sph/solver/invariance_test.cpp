@@ -12,7 +12,7 @@ namespace sluice {
 namespace {
 
 struct Scene {
-  Method method;
+  TestMethod method;
   Fluid fluid;
   std::vector<Vec> walls;
 };
@@ -30,7 +30,7 @@ Scene tank(Integrator integrator, Precision precision) {
 }
 
 Fluid after(const Scene& scene, int steps) {
-  Solver solver(scene.method, start_from(scene.fluid), scene.walls, {});
+  Solver solver = solver_for(scene.method, start_from(scene.fluid), scene.walls, {});
   run_steps(solver, steps);
   return fluid_of(solver.state());
 }
@@ -38,8 +38,8 @@ Fluid after(const Scene& scene, int steps) {
 Scene moved(Scene scene, const Vec& by) {
   for (Vec& x : scene.fluid.x) x += by;
   for (Vec& x : scene.walls) x += by;
-  scene.method.domain.min += by;
-  scene.method.domain.max += by;
+  scene.method.domain.box.min += by;
+  scene.method.domain.box.max += by;
   return scene;
 }
 
@@ -89,12 +89,12 @@ TEST(GalileanShift, ChangesNothingButTheFrame) {
       const Vec shift(3.0, 0.0);
       // Steps depend on the largest speed: a lone particle has it, the same in both frames.
       scene.fluid.add({0.0, 1.8}, {-1.5, 9.0}, 0.0);
-      scene.method.domain = {{-3.0, -3.0}, {3.0, 3.0}};
+      scene.method.domain.box = {{-3.0, -3.0}, {3.0, 3.0}};
       Scene shifted = scene;
       for (Vec& v : shifted.fluid.v) v += shift;
 
-      Solver one(scene.method, start_from(scene.fluid), {}, {});
-      Solver other(shifted.method, start_from(shifted.fluid), {}, {});
+      Solver one = solver_for(scene.method, start_from(scene.fluid), {}, {});
+      Solver other = solver_for(shifted.method, start_from(shifted.fluid), {}, {});
       run_steps(one, 12);
       run_steps(other, 12);
       EXPECT_NEAR(other.time() / one.time(), 1.0, 1e-6);
@@ -123,8 +123,8 @@ TEST(Units, LengthGravityAndDensityScaleOutOfEverythingOverTwelveDecades) {
       const double speed = std::sqrt(k.length * k.gravity);
       other.method.spacing *= k.length;
       other.method.smoothing_length *= k.length;
-      other.method.domain.min *= k.length;
-      other.method.domain.max *= k.length;
+      other.method.domain.box.min *= k.length;
+      other.method.domain.box.max *= k.length;
       other.method.gravity *= k.gravity;
       other.method.reference_density *= k.density;
       other.method.sound_speed *= speed;

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kH = 0.1;
 
-Method pair_method(Precision precision) {
-  Method m = full_method();
+TestMethod pair_method(Precision precision) {
+  TestMethod m = full_method();
   m.smoothing_length = kH;
   m.reinitialisation.reset();
   m.precision = precision;
@@ -26,13 +26,13 @@ Method pair_method(Precision precision) {
 }
 
 /// Rates of `steps` steps of the leap-frog against all pairs.
-void expect_all_pairs(const Method& m, const Fluid& start, const std::vector<Vec>& walls, int steps,
-                      const std::string& target, const std::string& what) {
+void expect_all_pairs(const TestMethod& m, const Fluid& start, const std::vector<Vec>& walls,
+                      int steps, const std::string& target, const std::string& what) {
   // Mixed precision resolves 3e-5 h where a domain has several origins, and better in a small one.
-  const bool vast = m.domain.size().x() > 1024.0 * kH;
+  const bool vast = m.domain.box.size().x() > 1024.0 * kH;
   const double single = vast ? 1e-4 : 1e-5;
   const double eps = m.precision == Precision::mixed ? single : 1e-10;
-  Solver solver(m, start_from(start), walls, {1, target});
+  Solver solver = solver_for(m, start_from(start), walls, {1, target});
   for (int n = 0; n < steps; ++n) {
     const Fluid fluid = fluid_of(solver.state());
     const PlainRates expected = plain_rates(m, fluid, walls, plain_wall_pressures(m, fluid, walls));
@@ -47,7 +47,7 @@ void expect_all_pairs(const Method& m, const Fluid& start, const std::vector<Vec
   }
 }
 
-void expect_all_pairs_in_both(Method m, const Fluid& fluid, const std::vector<Vec>& walls,
+void expect_all_pairs_in_both(TestMethod m, const Fluid& fluid, const std::vector<Vec>& walls,
                               int steps, const std::string& what) {
   for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
     m.precision = precision;
@@ -128,9 +128,9 @@ TEST(Neighbours, AreAllFoundWhereParticlesLieFarApart) {
 }
 
 /// 3000 h wide: single-precision positions have several origins.
-Method vast_method(Precision precision) {
-  Method m = pair_method(precision);
-  m.domain = {{-150.0, -150.0}, {150.0, 150.0}};
+TestMethod vast_method(Precision precision) {
+  TestMethod m = pair_method(precision);
+  m.domain.box = {{-150.0, -150.0}, {150.0, 150.0}};
   return m;
 }
 
@@ -141,9 +141,9 @@ TEST(Neighbours, AreThoseOfBeforeBesideAParticleFarOutsideTheDomain) {
   more.add({-4000.0 * kH, -0.75}, {0.0, 0.0}, 0.0);
   for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
     for (const std::string& target : simd_targets()) {
-      const Method m = pair_method(precision);
-      Solver alone(m, start_from(fluid), {}, {1, target});
-      Solver beside(m, start_from(more), {}, {1, target});
+      const TestMethod m = pair_method(precision);
+      Solver alone = solver_for(m, start_from(fluid), {}, {1, target});
+      Solver beside = solver_for(m, start_from(more), {}, {1, target});
       alone.step();
       beside.step();
       const Fluid expected = fluid_of(alone.state());
@@ -172,7 +172,7 @@ TEST(Neighbours, AreAllFoundAcrossTheOriginCellsOfAVastDomain) {
     }
     for (int k = 0; k < 10; ++k) walls.push_back(place + dice.in_box({-0.5, -0.5}, {0.5, 0.5}));
   }
-  Method m = vast_method(Precision::mixed);
+  TestMethod m = vast_method(Precision::mixed);
   expect_all_pairs_in_both(m, fluid, walls, 12, "vast domain");
   m.kernel = KernelKind::wendland_c2;
   expect_all_pairs_in_both(m, fluid, walls, 12, "vast domain, Wendland");
@@ -183,12 +183,12 @@ TEST(Neighbours, AreAllFoundInALongChannelFarFromTheOrigin) {
   for (const double far : {1e3, 1e4, 1e5, 1e6}) {
     Dice dice(47);
     const Fluid fluid = random_block(dice, {far, 0.0}, 8, 8, kH, 0.3, 3.0, 10.0);
-    Method m = pair_method(Precision::double_precision);
+    TestMethod m = pair_method(Precision::double_precision);
     m.diffusion->kind = DiffusionKind::molteni_colagrossi;
-    m.domain = {{-1.0, -1.0}, {far + 3.0, 3.0}};
+    m.domain.box = {{-1.0, -1.0}, {far + 3.0, 3.0}};
     const std::string what = "channel of " + std::to_string(far) + " m";
     // Positions resolve 1e-10 m or better here.
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     for (int n = 0; n < 30; ++n) {
       const Fluid now = fluid_of(solver.state());
       const PlainRates expected = plain_rates(m, now, {}, {});
@@ -204,11 +204,11 @@ TEST(Neighbours, TheBoundOfTheirNumberIsNotBelowTheTruth) {
   Fluid fluid;
   Dice dice(48);
   for (int k = 0; k < 300; ++k) fluid.add(dice.in_box({0, 0}, {0.1, 0.1}));
-  const Solver crowd(pair_method(Precision::mixed), start_from(fluid), {}, {});
+  const Solver crowd = solver_for(pair_method(Precision::mixed), start_from(fluid), {}, {});
   EXPECT_GE(crowd.extremes().max_neighbours, 300U);
 
   const Fluid block = random_block(dice, {-1.0, -1.0}, 20, 20, kH, 0.0, 0.0, 0.0);
-  const Solver even(pair_method(Precision::mixed), start_from(block), {}, {});
+  const Solver even = solver_for(pair_method(Precision::mixed), start_from(block), {}, {});
   // 9 pi = 28.3 lattice points lie within 3 h.
   EXPECT_EQ(even.extremes().max_neighbours, 0U);
 }

@@ -28,9 +28,9 @@ TEST(PressureProbe, ReturnsALinearFieldWhereTheLatticeIsSymmetric) {
     fluid.excess[i] = pressure(fluid.x[i]) / kCSquared;
   }
   for (const KernelKind kernel : kKernels) {
-    Method m = plain_method();
+    TestMethod m = plain_method();
     m.kernel = kernel;
-    const Solver solver(m, start_from(fluid), {}, {});
+    const Solver solver = solver_for(m, start_from(fluid), {}, {});
     // Lattice points, cell centres and edge midpoints, farther than any support from the edges.
     for (const Vec& point : {Vec(0.05, -0.25), Vec(0.0, -0.2), Vec(0.05, -0.2), Vec(-0.1, -0.15)}) {
       // Not dx: where the cut-off meets a lattice point, rounding decides which side it is on.
@@ -43,7 +43,7 @@ TEST(PressureProbe, ReturnsALinearFieldWhereTheLatticeIsSymmetric) {
 }
 
 TEST(PressureProbe, HasAWeightOfOneInsideAHalfAtTheSurfaceAndNoneOutside) {
-  const Solver solver(plain_method(), start_from(still_block()), {}, {});
+  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   // The sum of W over a lattice of h = dx is its integral, 1 - e^-9, to 2 exp(-pi^2) = 1e-4, and
   // what the cut leaves of single particles near it, some 1e-4 each.
   EXPECT_NEAR(solver.pressure_at({0.0, -0.2}, kDx).weight, 1.0, 2e-3);
@@ -52,7 +52,7 @@ TEST(PressureProbe, HasAWeightOfOneInsideAHalfAtTheSurfaceAndNoneOutside) {
 }
 
 TEST(PressureProbe, IsDryWithoutNeighboursWhateverItsSmoothingLength) {
-  const Solver solver(plain_method(), start_from(still_block()), {}, {});
+  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   for (const double h : {1e-6, 0.01, 0.1, 0.3}) {
     const Probe probe = solver.pressure_at({1.99, 1.99}, h);
     EXPECT_EQ(probe.weight, 0.0);
@@ -66,18 +66,18 @@ void expect_plain_pressures(const std::string& target, KernelKind kernel, int co
                             double widest) {
   SCOPED_TRACE(target);
   Dice dice(71);
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.kernel = kernel;
   const Fluid start = random_block(dice, {-1.0, -1.0}, columns, rows, kDx, 0.2, 1.0, 10.0);
   const Vec end = Vec(-1.0, -1.0) + kDx * Vec(columns, rows);
-  m.domain = {{-3.0, -3.0}, end + Vec(3.0, 3.0)};
-  Solver solver(m, start_from(start), {}, {1, target});
+  m.domain.box = {{-3.0, -3.0}, end + Vec(3.0, 3.0)};
+  Solver solver = solver_for(m, start_from(start), {}, {1, target});
   for (int n = 0; n < 25; ++n) {
     solver.step();
     const Fluid fluid = fluid_of(solver.state());
     for (int k = 0; k < 20; ++k) {
       const Vec point = dice.in_box({-1.3, -1.3}, end + Vec(0.3, 0.3));
-      Method at = m;
+      TestMethod at = m;
       at.smoothing_length = dice.between(0.02, widest);
       double weighted = 0.0;
       double plain = 0.0;
@@ -112,10 +112,10 @@ TEST(PressureProbe, EqualsTheSumOverAllParticlesWhereItReachesFarAlongALayer) {
 TEST(SurfaceProbe, FindsTheTopOfALatticeToAQuarterOfASpacing) {
   for (const KernelKind kernel : kKernels) {
     for (const double ratio : {1.0, 1.3}) {
-      Method m = plain_method();
+      TestMethod m = plain_method();
       m.kernel = kernel;
       m.smoothing_length = ratio * kDx;
-      const Solver solver(m, start_from(still_block()), {}, {});
+      const Solver solver = solver_for(m, start_from(still_block()), {}, {});
       for (double x = -0.6; x < 0.6; x += 0.037) {
         const Probe probe = solver.surface_height_at({x, 0.0});
         EXPECT_NEAR(probe.value, 0.6, 0.25 * kDx) << "x = " << x << ", h/dx = " << ratio;
@@ -129,28 +129,29 @@ TEST(SurfaceProbe, DoesNotCountADropletAboveTheSurface) {
   Fluid fluid = still_block();
   fluid.add({0.0, 1.5});
   fluid.add({0.3, 1.0});
-  const Solver solver(plain_method(), start_from(fluid), {}, {});
+  const Solver solver = solver_for(plain_method(), start_from(fluid), {}, {});
   EXPECT_NEAR(solver.surface_height_at({0.0, 0.0}).value, 0.6, 0.25 * kDx);
   EXPECT_NEAR(solver.surface_height_at({0.3, 0.0}).value, 0.6, 0.25 * kDx);
 }
 
 TEST(SurfaceProbe, HasNoWeightWhereNoFluidIs) {
-  const Solver solver(plain_method(), start_from(still_block()), {}, {});
+  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   for (const double x : {-1.9, 1.4, 1.9, 50.0, -50.0}) {
     EXPECT_EQ(solver.surface_height_at({x, 0.0}).weight, 0.0) << x;
   }
 }
 
 TEST(FrontProbe, IsHalfASpacingBeforeTheForemostParticle) {
-  const Solver solver(plain_method(), start_from(still_block()), {}, {});
+  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   EXPECT_NEAR(solver.surge_front().value, 1.0, 1e-12);
   EXPECT_GT(solver.surge_front().weight, 0.0);
 }
 
 TEST(DistanceProbe, IsThatOfTheNearestParticleAndInfiniteBeyondTheSupport) {
   Dice dice(72);
-  const Method m = plain_method();
-  Solver solver(m, start_from(random_block(dice, {-1, -1}, 20, 16, kDx, 0.2, 4.0, 10.0)), {}, {});
+  const TestMethod m = plain_method();
+  Solver solver =
+      solver_for(m, start_from(random_block(dice, {-1, -1}, 20, 16, kDx, 0.2, 4.0, 10.0)), {}, {});
   run_steps(solver, 9);
   const Fluid fluid = fluid_of(solver.state());
   int far = 0;
@@ -180,12 +181,12 @@ double compression_energy(double excess) {
 }
 
 TEST(EnergyProbe, IsThatOfKnownStates) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.gravity = {0.0, -9.81};
   Fluid fluid;
   fluid.add({0.3, 0.7}, {3.0, 4.0}, 25.0);
   fluid.add({-1.0, -0.2}, {0.0, 2.0}, -40.0);
-  const Solver solver(m, start_from(fluid), {}, {});
+  const Solver solver = solver_for(m, start_from(fluid), {}, {});
   const Energy energy = solver.energy();
   // 10 kg each.
   EXPECT_NEAR(energy.kinetic, 0.5 * 10.0 * (25.0 + 4.0), 1e-11);
@@ -200,7 +201,7 @@ TEST(EnergyProbe, KeepsItsDigitsFromNoCompressionToMuch) {
   for (const double excess : {1e-6, -1e-3, 0.1, 5.0, -19.99, 19.99, 20.01, -20.01, 200.0}) {
     Fluid fluid;
     fluid.add({0.0, 0.0}, {0.0, 0.0}, excess);
-    const Solver solver(plain_method(), start_from(fluid), {}, {});
+    const Solver solver = solver_for(plain_method(), start_from(fluid), {}, {});
     const double expected = 10.0 * compression_energy(excess);
     EXPECT_NEAR(solver.energy().internal, expected, 1e-9 * expected) << excess;
   }
@@ -208,12 +209,12 @@ TEST(EnergyProbe, KeepsItsDigitsFromNoCompressionToMuch) {
 
 TEST(EnergyProbe, OfAFallingParticleIsKept) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = plain_method();
+    TestMethod m = plain_method();
     m.integrator = integrator;
     m.gravity = {0.0, -9.81};
     Fluid fluid;
     fluid.add({0.0, 1.5}, {0.3, 0.0});
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     const double start = solver.energy().total();
     run_steps(solver, 400);
     EXPECT_GT(solver.energy().kinetic, 50.0);

@@ -17,12 +17,12 @@ constexpr int kColumns = 34;
 constexpr int kRows = 26;
 const Vec kCorner(-1.7, -1.6);
 
-Method method_of(Integrator integrator, Precision precision) {
-  Method m = full_method();
+TestMethod method_of(Integrator integrator, Precision precision) {
+  TestMethod m = full_method();
   m.integrator = integrator;
   m.precision = precision;
-  m.domain = {{-2.0, -2.0}, {2.0, 1.2}};
-  m.wall_top = 1.0;
+  m.domain.box = {{-2.0, -2.0}, {2.0, 1.2}};
+  m.domain.wall_top = 1.0;
   if (integrator == Integrator::kick_drift_kick) m.shifting = ParticleShifting{2.0};
   return m;
 }
@@ -43,8 +43,8 @@ struct Whole {
   std::vector<std::uint64_t> sorted_at;  ///< steps in which a sort took place
 };
 
-Whole uninterrupted(const Method& m, std::uint64_t steps) {
-  Solver solver(m, start_from(splash()), tank(), {});
+Whole uninterrupted(const TestMethod& m, std::uint64_t steps) {
+  Solver solver = solver_for(m, start_from(splash()), tank(), {});
   Whole run;
   for (std::uint64_t n = 0; n < steps; ++n) {
     const auto sorts = solver.sort_count();
@@ -57,14 +57,14 @@ Whole uninterrupted(const Method& m, std::uint64_t steps) {
 
 /// Stops before each of the given steps and goes on in a new solver, with 1, 2, 3 and 8 threads in
 /// turn.
-SolverState in_parts(const Method& m, std::uint64_t steps, std::vector<std::uint64_t> stops) {
+SolverState in_parts(const TestMethod& m, std::uint64_t steps, std::vector<std::uint64_t> stops) {
   std::sort(stops.begin(), stops.end());
   stops.push_back(steps);
   constexpr int kThreads[] = {1, 2, 3, 8};
   SolverState state = start_from(splash());
   std::size_t part = 0;
   for (const std::uint64_t stop : stops) {
-    Solver solver(m, state, tank(), {kThreads[part++ % 4], ""});
+    Solver solver = solver_for(m, state, tank(), {kThreads[part++ % 4], ""});
     while (solver.step_count() < stop) solver.step();
     state = solver.state();
   }
@@ -73,7 +73,7 @@ SolverState in_parts(const Method& m, std::uint64_t steps, std::vector<std::uint
 
 class ThreadsAndRestart : public ::testing::TestWithParam<std::tuple<Integrator, Precision>> {
  protected:
-  [[nodiscard]] static Method method() {
+  [[nodiscard]] static TestMethod method() {
     return method_of(std::get<0>(GetParam()), std::get<1>(GetParam()));
   }
 };
@@ -86,17 +86,17 @@ TEST_P(ThreadsAndRestart, TheSplashSortsAndLosesParticlesElseItProvesLittle) {
 }
 
 TEST_P(ThreadsAndRestart, AnyNumberOfThreadsGivesTheSameBits) {
-  const Method m = method();
+  const TestMethod m = method();
   const SolverState expected = uninterrupted(m, 30).end;
   for (const int threads : {2, 3, 8}) {
-    Solver solver(m, start_from(splash()), tank(), {threads, ""});
+    Solver solver = solver_for(m, start_from(splash()), tank(), {threads, ""});
     run_steps(solver, 30);
     expect_same_bits(solver.state(), expected, std::to_string(threads) + " threads");
   }
 }
 
 TEST_P(ThreadsAndRestart, AStopAtReinitialisationsAndSortsGivesTheSameBits) {
-  const Method m = method();
+  const TestMethod m = method();
   const Whole run = uninterrupted(m, 60);
   std::vector<std::uint64_t> stops{0, 1, 2, 19, 20, 21, 39, 40, 41, 60};
   for (const std::uint64_t sorted : run.sorted_at) {
@@ -109,14 +109,14 @@ TEST_P(ThreadsAndRestart, AStopAtReinitialisationsAndSortsGivesTheSameBits) {
 }
 
 TEST_P(ThreadsAndRestart, AStopAfterEveryStepGivesTheSameBits) {
-  const Method m = method();
+  const TestMethod m = method();
   std::vector<std::uint64_t> all(60);
   std::iota(all.begin(), all.end(), 0U);
   expect_same_bits(in_parts(m, 60, all), uninterrupted(m, 60).end, "60 stops");
 }
 
 TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
-  const Method m = method();
+  const TestMethod m = method();
   const SolverState expected = uninterrupted(m, 60).end;
   Dice dice(12);
   for (int trial = 0; trial < 6; ++trial) {
@@ -127,15 +127,15 @@ TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
 }
 
 /// The tank's right wall goes up by about half of its height within 60 steps.
-Method lifting(Method m) {
+TestMethod lifting(TestMethod m) {
   m.laminar_viscosity = LaminarViscosity{0.01};
   m.wall_artificial_viscosity.reset();
-  m.gate = GateMotion{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
+  m.domain.gate = GateMotion{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
   return m;
 }
 
 TEST_P(ThreadsAndRestart, AStopWhileAWallIsLiftedGivesTheSameBits) {
-  const Method m = lifting(method());
+  const TestMethod m = lifting(method());
   const Whole run = uninterrupted(m, 60);
   const double edge = -1.6 + 15.0 * run.end.time;
   EXPECT_GT(edge, -1.0);
@@ -146,8 +146,8 @@ TEST_P(ThreadsAndRestart, AStopWhileAWallIsLiftedGivesTheSameBits) {
 }
 
 TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
-  const Method m = method();
-  Solver watched(m, start_from(splash()), tank(), {});
+  const TestMethod m = method();
+  Solver watched = solver_for(m, start_from(splash()), tank(), {});
   for (int n = 0; n < 30; ++n) {
     expect_same_bits(watched.state(), watched.state(), "taken twice");
     static_cast<void>(watched.energy());
@@ -160,12 +160,12 @@ TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
 }
 
 TEST_P(ThreadsAndRestart, AStateGivenToASolverComesBackAsItWas) {
-  const Method m = method();
+  const TestMethod m = method();
   for (const int steps : {1, 7, 20, 33}) {
-    Solver solver(m, start_from(splash()), tank(), {});
+    Solver solver = solver_for(m, start_from(splash()), tank(), {});
     run_steps(solver, steps);
     const SolverState taken = solver.state();
-    const Solver next(m, taken, tank(), {2, ""});
+    const Solver next = solver_for(m, taken, tank(), {2, ""});
     expect_same_bits(next.state(), taken, "after " + std::to_string(steps) + " steps");
     EXPECT_EQ(next.particle_count(), taken.particles.size());
     EXPECT_EQ(next.step_count(), taken.step);
@@ -175,10 +175,10 @@ TEST_P(ThreadsAndRestart, AStateGivenToASolverComesBackAsItWas) {
 }
 
 TEST_P(ThreadsAndRestart, WhatReadersSeeDoesNotDependOnAStop) {
-  const Method m = method();
-  Solver solver(m, start_from(splash()), tank(), {});
+  const TestMethod m = method();
+  Solver solver = solver_for(m, start_from(splash()), tank(), {});
   run_steps(solver, 33);
-  const Solver next(m, solver.state(), tank(), {});
+  const Solver next = solver_for(m, solver.state(), tank(), {});
   for (double x = -1.5; x < 1.7; x += 0.31) {
     EXPECT_EQ(next.surface_height_at({x, 0.0}).value, solver.surface_height_at({x, 0.0}).value);
     const Vec point(x, -1.3);
@@ -210,37 +210,37 @@ SolverState shuffled(const SolverState& state, std::uint64_t seed) {
 }
 
 TEST_P(ThreadsAndRestart, TheOrderInWhichParticlesAreGivenChangesNoBit) {
-  const Method m = method();
+  const TestMethod m = method();
   const SolverState expected = uninterrupted(m, 25).end;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Solver solver(m, shuffled(start_from(splash()), seed), tank(), {});
+    Solver solver = solver_for(m, shuffled(start_from(splash()), seed), tank(), {});
     run_steps(solver, 25);
     expect_same_bits(solver.state(), expected, "order " + std::to_string(seed));
   }
 }
 
 TEST_P(ThreadsAndRestart, CoincidentParticlesAreOrderedByTheirIds) {
-  const Method m = method();
+  const TestMethod m = method();
   Dice dice(13);
   Fluid fluid = random_block(dice, {-0.3, -0.3}, 6, 6, 0.1, 0.1, 1.0, 10.0);
   for (int k = 0; k < 7; ++k) {
     fluid.add(fluid.x[20], dice.in_box({-1, -1}, {1, 1}), dice.between(-10, 10));
   }
-  Solver expected(m, start_from(fluid), {}, {});
+  Solver expected = solver_for(m, start_from(fluid), {}, {});
   run_steps(expected, 3);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Solver solver(m, shuffled(start_from(fluid), seed), {}, {});
+    Solver solver = solver_for(m, shuffled(start_from(fluid), seed), {}, {});
     run_steps(solver, 3);
     expect_same_bits(solver.state(), expected.state(), "order " + std::to_string(seed));
   }
 }
 
 TEST_P(ThreadsAndRestart, TheOrderOfTheWallsMovesOnlyTheirPressures) {
-  const Method m = method();
+  const TestMethod m = method();
   std::vector<Vec> reversed = tank();
   std::reverse(reversed.begin(), reversed.end());
-  Solver one(m, start_from(splash()), tank(), {});
-  Solver other(m, start_from(splash()), reversed, {});
+  Solver one = solver_for(m, start_from(splash()), tank(), {});
+  Solver other = solver_for(m, start_from(splash()), reversed, {});
   run_steps(one, 10);
   run_steps(other, 10);
   expect_same_bits(one.state(), other.state(), "walls reversed");
@@ -264,7 +264,7 @@ RC_GTEST_PROP(RestartProperty, AnySmallFluidGoesOnWithTheSameBits, ()) {
   const auto steps = *rc::gen::inRange(1, 45);
   const auto stop = *rc::gen::inRange(0, steps + 1);
   const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000000);
-  Method m =
+  TestMethod m =
       method_of(*rc::gen::element(Integrator::modified_leap_frog, Integrator::kick_drift_kick),
                 *rc::gen::element(Precision::mixed, Precision::double_precision));
   m.kernel = *rc::gen::element(KernelKind::truncated_gaussian, KernelKind::wendland_c2);
@@ -279,11 +279,11 @@ RC_GTEST_PROP(RestartProperty, AnySmallFluidGoesOnWithTheSameBits, ()) {
   std::vector<Vec> walls;
   for (std::size_t k = dice.below(30); k > 0; --k) walls.push_back(dice.in_box({-1, -1}, {1, 1}));
 
-  Solver whole(m, start_from(fluid), walls, {});
+  Solver whole = solver_for(m, start_from(fluid), walls, {});
   run_steps(whole, steps);
-  Solver first(m, start_from(fluid), walls, {2, ""});
+  Solver first = solver_for(m, start_from(fluid), walls, {2, ""});
   run_steps(first, stop);
-  Solver second(m, first.state(), walls, {});
+  Solver second = solver_for(m, first.state(), walls, {});
   run_steps(second, steps - stop);
   const SolverState a = whole.state();
   const SolverState b = second.state();

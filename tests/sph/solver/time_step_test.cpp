@@ -12,20 +12,20 @@
 namespace sluice {
 namespace {
 
-Method method_of(Integrator integrator) {
-  Method m = plain_method();
+TestMethod method_of(Integrator integrator) {
+  TestMethod m = plain_method();
   m.integrator = integrator;
   return m;
 }
 
 TEST(TimeStep, IsLimitedBySoundAndTheFastestParticle) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = method_of(integrator);
+    TestMethod m = method_of(integrator);
     m.courant = 0.4;
     Fluid fluid;
     fluid.add({0.0, 0.0}, {3.0, 4.0});
     fluid.add({1.0, 0.0}, {-1.0, 0.0});
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     solver.step();
     // C h/(c + |v|)
     EXPECT_NEAR(solver.time_step(), 0.4 * 0.1 / (20.0 + 5.0), 1e-16);
@@ -37,11 +37,11 @@ TEST(TimeStep, IsLimitedBySoundAndTheFastestParticle) {
 
 TEST(TimeStep, IsLimitedByForceWhereAccelerationIsLarge) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = method_of(integrator);
+    TestMethod m = method_of(integrator);
     m.gravity = {3e4, -4e4};
     Fluid fluid;
     fluid.add({0.0, 0.0});
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     solver.step();
     // 0.25 sqrt(h/|a|)
     EXPECT_NEAR(solver.time_step(), 0.25 * std::sqrt(0.1 / 5e4), 1e-16);
@@ -55,7 +55,7 @@ TEST(TimeStep, OfAFluidAtRestIsTheLimitOfSoundAlone) {
   for (const Integrator integrator : kIntegrators) {
     Fluid fluid;
     fluid.add({0.0, 0.0});
-    Solver solver(method_of(integrator), start_from(fluid), {}, {});
+    Solver solver = solver_for(method_of(integrator), start_from(fluid), {}, {});
     run_steps(solver, 3);
     EXPECT_NEAR(solver.time(), 3.0 * 0.25 * 0.1 / 20.0, 1e-16);
   }
@@ -75,15 +75,15 @@ void run_until_removed(Solver& solver) {
 
 TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = method_of(integrator);
-    m.wall_top = 1.0;
+    TestMethod m = method_of(integrator);
+    m.domain.wall_top = 1.0;
     Fluid fluid;
     fluid.add({0.0, 0.0});
     fluid.add({0.0, 1.5}, {0.0, 20.0});
     fluid.add({1.5, 0.5}, {20.0, 0.0});
     fluid.add({1.5, 1.5}, {20.0, 0.0});
     fluid.add({0.0, -1.5}, {0.0, -20.0});
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     run_steps(solver, 100);
     ASSERT_EQ(solver.removed().size(), 4U);
     EXPECT_EQ(solver.particle_count(), 1U);
@@ -91,7 +91,7 @@ TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
     for (const RemovedParticle& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 3.0;
       EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
-      EXPECT_FALSE(m.domain.contains(r.position)) << r.id;
+      EXPECT_FALSE(m.domain.box.contains(r.position)) << r.id;
       EXPECT_GT(r.step, 0U);
       EXPECT_GT(r.time, 0.0);
       EXPECT_LE(r.time, solver.time());
@@ -101,33 +101,33 @@ TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
 
 TEST(Leaving, OverTheRimIsOvertoppingBeforeItFallsBehindTheWall) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = method_of(integrator);
+    TestMethod m = method_of(integrator);
     m.gravity = {0.0, -9.81};
-    m.wall_top = 0.0;
-    m.rim_left = -1.0;
-    m.rim_right = 1.0;
+    m.domain.wall_top = 0.0;
+    m.domain.rim_left = -1.0;
+    m.domain.rim_right = 1.0;
     Fluid fluid;
     fluid.add({0.0, 0.5});                // falls back into the tank
     fluid.add({0.7, 0.2}, {3.0, 0.0});    // passes the right rim 0.15 above it
     fluid.add({-0.7, 0.2}, {-3.0, 0.0});  // and the left one
     fluid.add({1.2, -0.5}, {4.0, 0.0});   // has been behind the wall from the start
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     while (solver.time() < 0.4) solver.step();
     ASSERT_EQ(solver.removed().size(), 3U);
     for (const RemovedParticle& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 2.0;
       EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
-      EXPECT_EQ(m.domain.contains(r.position), over) << r.id;
+      EXPECT_EQ(m.domain.box.contains(r.position), over) << r.id;
     }
   }
 }
 
 TEST(Leaving, WithoutATankIsALeakEverywhere) {
-  Method m = method_of(Integrator::kick_drift_kick);
+  TestMethod m = method_of(Integrator::kick_drift_kick);
   Fluid fluid;
   fluid.add({0.0, 1.5}, {0.0, 20.0});
   fluid.add({0.0, 0.0});
-  Solver solver(m, start_from(fluid), {}, {});
+  Solver solver = solver_for(m, start_from(fluid), {}, {});
   run_until_removed(solver);
   ASSERT_EQ(solver.removed().size(), 1U);
   EXPECT_EQ(solver.removed()[0].cause, RemovalCause::leaked);
@@ -135,13 +135,13 @@ TEST(Leaving, WithoutATankIsALeakEverywhere) {
 
 TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
   for (const Precision precision : kPrecisions) {
-    Method m = method_of(Integrator::modified_leap_frog);
+    TestMethod m = method_of(Integrator::modified_leap_frog);
     m.precision = precision;
     m.viscosity = ArtificialViscosity{};
     m.diffusion = DensityDiffusion{};
     // It passes close to the block and is within its support when it leaves.
     const Fluid start = block_with_an_outsider({0.02, 1.94}, {0.0, 4.0});
-    Solver solver(m, start_from(start), {}, {});
+    Solver solver = solver_for(m, start_from(start), {}, {});
     run_until_removed(solver);
     ASSERT_EQ(solver.removed().size(), 1U);
     ASSERT_EQ(solver.removed()[0].id, 40.0);
@@ -167,13 +167,13 @@ TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
 TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
-      Method m = method_of(integrator);
+      TestMethod m = method_of(integrator);
       m.precision = precision;
       m.gravity = {0.0, -9.81};
       m.reinitialisation = Reinitialisation{2};
       Fluid fluid;
       for (int k = 0; k < 3; ++k) fluid.add({0.4 * k, 1.9}, {0.0, 15.0});
-      Solver solver(m, start_from(fluid), {{0.0, -1.0}}, {2, ""});
+      Solver solver = solver_for(m, start_from(fluid), {{0.0, -1.0}}, {2, ""});
       run_steps(solver, 40);
       EXPECT_EQ(solver.particle_count(), 0U);
       EXPECT_EQ(solver.removed().size(), 3U);
@@ -184,7 +184,7 @@ TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
       EXPECT_EQ(solver.surface_height_at({0.0, 0.0}).weight, 0.0);
       EXPECT_EQ(solver.wall_pressures(), std::vector<double>{0.0});
       // The empty state is one to go on from.
-      Solver next(m, solver.state(), {{0.0, -1.0}}, {});
+      Solver next = solver_for(m, solver.state(), {{0.0, -1.0}}, {});
       next.step();
       solver.step();
       expect_same_bits(next.state(), solver.state(), "nobody left");
@@ -194,12 +194,12 @@ TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
 
 TEST(Leaving, ARunawayNeitherGrowsMemoryNorForcesASortAtEachStep) {
   for (const Integrator integrator : kIntegrators) {
-    Method m = method_of(integrator);
-    m.domain = {{-2.0, -2.0}, {3000.0, 2.0}};
+    TestMethod m = method_of(integrator);
+    m.domain.box = {{-2.0, -2.0}, {3000.0, 2.0}};
     Dice dice(62);
     Fluid fluid = random_block(dice, {-1.0, -1.0}, 10, 10, 0.1, 0.0, 0.0, 0.0);
     fluid.add({0.5, 1.0}, {20.0, 0.0});  // c
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     const std::size_t before = solver.memory_bytes();
     constexpr int kSteps = 2000;
     run_steps(solver, kSteps);
@@ -214,7 +214,7 @@ TEST(Leaving, AParticleThatStartsOutsideIsRemovedAtTheFirstStep) {
     Fluid fluid;
     fluid.add({0.0, 0.0});
     fluid.add({1e9, -1e9});
-    Solver solver(method_of(integrator), start_from(fluid), {}, {});
+    Solver solver = solver_for(method_of(integrator), start_from(fluid), {}, {});
     solver.step();
     EXPECT_EQ(solver.particle_count(), 1U);
     EXPECT_EQ(solver.removed().size(), 1U);
@@ -225,15 +225,15 @@ TEST(EmptySlots, NeverLeakIntoWhatReadersSee) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
       for (int count = 1; count <= 9; ++count) {
-        Method m = full_method();
+        TestMethod m = full_method();
         m.gravity = {0.0, -9.81};
         m.integrator = integrator;
         m.precision = precision;
-        m.domain = {{-100.0, -100.0}, {100.0, 100.0}};
+        m.domain.box = {{-100.0, -100.0}, {100.0, 100.0}};
         Fluid fluid;
         // Rising: they slow down while anything at rest speeds up.
         for (int k = 0; k < count; ++k) fluid.add({1.3 * k, 0.7 * k}, {0.0, 9.81}, 2.0 + k);
-        Solver solver(m, start_from(fluid), {}, {});
+        Solver solver = solver_for(m, start_from(fluid), {}, {});
         const std::string what = std::to_string(count) + " particles, " + name_of(integrator);
         while (solver.time() < 0.7) solver.step();
         const double v = 9.81 * (1.0 - solver.time());

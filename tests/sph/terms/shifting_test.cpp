@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kShiftedSpacing = 0.1;
 
-Method shifting_method(KernelKind kernel, Precision precision) {
-  Method m = full_method();
+TestMethod shifting_method(KernelKind kernel, Precision precision) {
+  TestMethod m = full_method();
   m.kernel = kernel;
   m.smoothing_length = kernel == KernelKind::wendland_c2 ? 0.15 : 0.1;
   m.precision = precision;
@@ -28,7 +28,7 @@ Method shifting_method(KernelKind kernel, Precision precision) {
 
 /// The way of each particle: 2 h |v| dt sum V slope x_ij, as far as the trace of sum V slope x_ij
 /// x_ij is above 1.75, in full from 1.9 on, and no more than dx/10.
-std::vector<Vec> plain_shift(const Method& m, const Fluid& fluid, const std::vector<Vec>& walls,
+std::vector<Vec> plain_shift(const TestMethod& m, const Fluid& fluid, const std::vector<Vec>& walls,
                              const std::vector<double>& wall_pressure, double dt) {
   const double mass = m.reference_density * m.spacing * m.spacing;
   std::vector<Vec> ways;
@@ -68,13 +68,13 @@ FluidAndWalls restless_tank() {
           walls_around(corner, 17, 13, kShiftedSpacing)};
 }
 
-void expect_shift(const Method& m, const FluidAndWalls& scene, const std::string& target) {
+void expect_shift(const TestMethod& m, const FluidAndWalls& scene, const std::string& target) {
   const std::string what = target + ", " + name_of(m.precision);
   const double eps = m.precision == Precision::mixed ? 2e-5 : 1e-11;
-  Solver solver(m, start_from(scene.fluid), scene.walls, {1, target});
-  Method without = m;
+  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
+  TestMethod without = m;
   without.shifting.reset();
-  Solver plain(without, start_from(scene.fluid), scene.walls, {1, target});
+  Solver plain = solver_for(without, start_from(scene.fluid), scene.walls, {1, target});
   const auto pressure = plain_wall_pressures(m, scene.fluid, scene.walls);
   const SolverState start = solver.state();
   solver.step();
@@ -119,11 +119,11 @@ TEST(ParticleShifting, IsThatOfThePlainDoubleLoop) {
 
 TEST(ParticleShifting, TakesPlaceInEverySecondStep) {
   const FluidAndWalls tank = restless_tank();
-  Method m = shifting_method(KernelKind::wendland_c2, Precision::mixed);
-  Solver solver(m, start_from(tank.fluid), tank.walls, {});
+  TestMethod m = shifting_method(KernelKind::wendland_c2, Precision::mixed);
+  Solver solver = solver_for(m, start_from(tank.fluid), tank.walls, {});
   m.shifting.reset();
   for (int n = 0; n < 4; ++n) {
-    Solver plain(m, solver.state(), tank.walls, {});
+    Solver plain = solver_for(m, solver.state(), tank.walls, {});
     solver.step();
     plain.step();
     const bool shifted = fluid_of(solver.state()).x != fluid_of(plain.state()).x;
@@ -132,15 +132,15 @@ TEST(ParticleShifting, TakesPlaceInEverySecondStep) {
 }
 
 TEST(ParticleShifting, IsBoundedByATenthOfTheSpacing) {
-  Method m = shifting_method(KernelKind::wendland_c2, Precision::double_precision);
+  TestMethod m = shifting_method(KernelKind::wendland_c2, Precision::double_precision);
   m.shifting->coefficient = 10.0;
   m.courant = 0.5;
   Dice dice(9);
   Fluid fluid = random_block(dice, {-0.7, -0.7}, 14, 14, kShiftedSpacing, 0.45, 0.0, 0.0);
   for (Vec& v : fluid.v) v = {9.0, 0.0};
-  Solver solver(m, start_from(fluid), {}, {});
+  Solver solver = solver_for(m, start_from(fluid), {}, {});
   m.shifting.reset();
-  Solver plain(m, start_from(fluid), {}, {});
+  Solver plain = solver_for(m, start_from(fluid), {}, {});
   solver.step();
   plain.step();
   const Fluid a = fluid_of(solver.state());
@@ -162,7 +162,7 @@ Fluid lattice_under_way(const Vec& velocity, const Vec& displaced) {
 }
 
 TEST(ParticleShifting, BringsADisplacedParticleBackAndLeavesSurfacesAlone) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.integrator = Integrator::kick_drift_kick;
   m.kernel = KernelKind::wendland_c2;
   m.smoothing_length = 0.15;
@@ -170,7 +170,7 @@ TEST(ParticleShifting, BringsADisplacedParticleBackAndLeavesSurfacesAlone) {
   m.shifting = ParticleShifting{2.0};
   const Vec velocity(1.0, 0.0);
   const Fluid start = lattice_under_way(velocity, {0.0, 0.3 * kShiftedSpacing});
-  Solver solver(m, start_from(start), {}, {});
+  Solver solver = solver_for(m, start_from(start), {}, {});
   run_steps(solver, 10);
   const Fluid end = fluid_of(solver.state());
   const auto way = [&](std::size_t i) {
@@ -186,11 +186,11 @@ TEST(ParticleShifting, BringsADisplacedParticleBackAndLeavesSurfacesAlone) {
 }
 
 TEST(ParticleShifting, MovesNothingInFluidAtRest) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.integrator = Integrator::kick_drift_kick;
   m.shifting = ParticleShifting{2.0};
   const Fluid start = lattice_under_way(Vec::Zero(), {0.0, 0.3 * kShiftedSpacing});
-  Solver solver(m, start_from(start), {}, {});
+  Solver solver = solver_for(m, start_from(start), {}, {});
   run_steps(solver, 3);
   const Fluid end = fluid_of(solver.state());
   for (std::size_t i = 0; i < start.size(); ++i) EXPECT_EQ((end.x[i] - start.x[i]).norm(), 0.0);

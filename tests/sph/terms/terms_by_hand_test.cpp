@@ -83,7 +83,7 @@ TEST(ContinuityTerm, WallsTakePartAtRest) {
 }
 
 TEST(DiffusionTerm, MolteniColagrossiIsFourDeltaCOverHTimesTheVolumeAverage) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.diffusion = DensityDiffusion{DiffusionKind::molteni_colagrossi, 0.1};
   m.gravity = {0.0, -9.81};  // which this term does not know
   Fluid fluid;
@@ -95,7 +95,7 @@ TEST(DiffusionTerm, MolteniColagrossiIsFourDeltaCOverHTimesTheVolumeAverage) {
 }
 
 TEST(DiffusionTerm, FourtakasLeavesAHydrostaticPairAlone) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.gravity = {0.0, -9.81};
   m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.1};
   // p = rho_0 g depth: the lower one is denser by rho_0 g h/c^2.
@@ -110,7 +110,7 @@ TEST(DiffusionTerm, FourtakasLeavesAHydrostaticPairAlone) {
 }
 
 TEST(DiffusionTerm, FourtakasDiffusesWhatIsNotHydrostatic) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.gravity = {0.0, -9.81};
   m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.1};
   const double hydrostatic = kRho0 * 9.81 * kH / (kC * kC);
@@ -126,7 +126,7 @@ TEST(DiffusionTerm, FourtakasDiffusesWhatIsNotHydrostatic) {
 TEST(DiffusionTerm, FourtakasWithoutGravityIsMolteniColagrossi) {
   Dice dice(5);
   const Fluid fluid = random_block(dice, {-0.5, -0.5}, 8, 8, kH, 0.2, 1.0, 20.0);
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.diffusion = DensityDiffusion{DiffusionKind::molteni_colagrossi, 0.1};
   const auto one = rates_at_start(m, fluid, {});
   m.diffusion->kind = DiffusionKind::fourtakas;
@@ -135,7 +135,7 @@ TEST(DiffusionTerm, FourtakasWithoutGravityIsMolteniColagrossi) {
 }
 
 TEST(ViscosityTerm, ActsOnApproachWithTheMeanDensity) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.viscosity = ArtificialViscosity{0.02, 0.01};
   Fluid fluid;
   fluid.add({0.0, 0.0}, {3.0, 0.0}, 0.0);
@@ -148,7 +148,7 @@ TEST(ViscosityTerm, ActsOnApproachWithTheMeanDensity) {
 }
 
 TEST(ViscosityTerm, AddsTheSquareOfTheApproachAtImpacts) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.viscosity = ArtificialViscosity{0.02, 0.01, 0.5};
   Fluid fluid;
   fluid.add({0.0, 0.0}, {3.0, 0.0}, 0.0);
@@ -161,7 +161,7 @@ TEST(ViscosityTerm, AddsTheSquareOfTheApproachAtImpacts) {
 }
 
 TEST(ViscosityTerm, DoesNotActOnReceding) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.viscosity = ArtificialViscosity{0.02, 0.01, 0.5};
   Fluid fluid;
   fluid.add({0.0, 0.0}, {-3.0, 1.0}, 0.0);
@@ -172,7 +172,7 @@ TEST(ViscosityTerm, DoesNotActOnReceding) {
 }
 
 TEST(ViscosityTerm, IsNotSummedAgainstWalls) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.viscosity = ArtificialViscosity{0.02, 0.01};
   Fluid fluid;
   fluid.add({0.0, 0.5 * kH}, {0.0, -2.0}, 0.0);
@@ -181,7 +181,7 @@ TEST(ViscosityTerm, IsNotSummedAgainstWalls) {
 }
 
 TEST(WallArtificialViscosityTerm, ActsAgainstWallsOnly) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.wall_artificial_viscosity = WallArtificialViscosity{0.05, 0.02};
   Fluid fluid;
   fluid.add({0.0, 0.5 * kH}, {1.0, -2.0}, 0.0);
@@ -196,7 +196,7 @@ TEST(WallArtificialViscosityTerm, ActsAgainstWallsOnly) {
 }
 
 TEST(LaminarViscosityTerm, DragsAPairTogetherAndAParticleToRestAtAWall) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.laminar_viscosity = LaminarViscosity{0.3};
   Fluid fluid;
   fluid.add({0.0, 0.0}, {3.0, 1.0}, 0.0);
@@ -214,7 +214,7 @@ TEST(LaminarViscosityTerm, DragsAPairTogetherAndAParticleToRestAtAWall) {
 
 TEST(LaminarViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
   // nu d2u/dy2 = -2 nu for u = -y^2; on a lattice of dx = h/1.5 the sum is that to 2 %.
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.kernel = KernelKind::wendland_c2;
   m.spacing = m.smoothing_length / 1.5;
   m.laminar_viscosity = LaminarViscosity{0.3};
@@ -231,7 +231,7 @@ TEST(LaminarViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
 }
 
 TEST(WallShearTerm, ActsAgainstWallsOnly) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.wall_shear = WallShear{0.1};
   Fluid fluid;
   fluid.add({1.0, 1.0}, {1.0, 0.0}, 0.0);
@@ -242,7 +242,7 @@ TEST(WallShearTerm, ActsAgainstWallsOnly) {
 }
 
 /// Stress on a layer of fluid that slides along a wall at `speed`, from one column of particles.
-double stress_at_wall(const Method& m, double speed) {
+double stress_at_wall(const TestMethod& m, double speed) {
   Fluid fluid;
   std::vector<Vec> walls;
   for (int row = 0; row < 5; ++row) {
@@ -264,7 +264,7 @@ double stress_at_wall(const Method& m, double speed) {
 TEST(WallShearTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
   for (const KernelKind kernel : {KernelKind::truncated_gaussian, KernelKind::wendland_c2}) {
     for (const double spacing : {kH / 1.5, kH / 1.2}) {
-      Method m = plain_method();
+      TestMethod m = plain_method();
       m.kernel = kernel;
       m.spacing = spacing;
       m.wall_shear = WallShear{0.1};
@@ -277,13 +277,14 @@ TEST(WallShearTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
 }
 
 /// Wall pressures at the start.
-std::vector<double> wall_pressures(Method m, const Fluid& fluid, const std::vector<Vec>& walls) {
+std::vector<double> wall_pressures(TestMethod m, const Fluid& fluid,
+                                   const std::vector<Vec>& walls) {
   m.integrator = Integrator::kick_drift_kick;
-  return Solver(m, start_from(fluid), walls, {}).wall_pressures();
+  return solver_for(m, start_from(fluid), walls, {}).wall_pressures();
 }
 
 TEST(WallPressureTerm, AddsTheHeadFromTheParticleToTheWall) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.gravity = {0.0, -9.81};
   Fluid fluid;
   fluid.add({0.0, 0.5 * kH}, Vec::Zero(), 2.0);
@@ -303,7 +304,7 @@ TEST(WallPressureTerm, WeighsItsNeighboursByTheKernel) {
 }
 
 TEST(WallPressureTerm, IsNegativeUnlessClamped) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   Fluid fluid;
   fluid.add({kH, 0.0}, Vec::Zero(), -2.0);
   EXPECT_CLOSE(wall_pressures(m, fluid, {{0.0, 0.0}})[0], -800.0);
@@ -320,7 +321,7 @@ TEST(WallPressureTerm, PushesTheFluidWithTheDensityOfTheStateEquation) {
 }
 
 TEST(ReinitialisationTerm, MovesBothTimeLevelsByTheSameIncrement) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.reinitialisation = Reinitialisation{20};
   Fluid fluid;
   fluid.add({0.0, 0.0}, Vec::Zero(), 10.0);
@@ -333,7 +334,7 @@ TEST(ReinitialisationTerm, MovesBothTimeLevelsByTheSameIncrement) {
   p.density_excess_half = {9.0, 27.0};
   p.position_sorted[0] = p.position[0];
   p.position_sorted[1] = p.position[1];
-  Solver solver(m, state, {}, {});
+  Solver solver = solver_for(m, state, {}, {});
   solver.step();
   // rho = (W0 + W1)/(W0/rho_i + W1/rho_j); nothing moves yet, so the step itself adds nothing.
   const double w = std::exp(-1.0);
@@ -345,13 +346,13 @@ TEST(ReinitialisationTerm, MovesBothTimeLevelsByTheSameIncrement) {
 }
 
 TEST(ReinitialisationTerm, LeavesAnIsolatedParticleAlone) {
-  Method m = plain_method();
+  TestMethod m = plain_method();
   m.reinitialisation = Reinitialisation{1};
   Fluid fluid;
   fluid.add({-1.0, -1.0}, {1.0, 0.0}, 7.0);
   for (const Integrator integrator : kIntegrators) {
     m.integrator = integrator;
-    Solver solver(m, start_from(fluid), {}, {});
+    Solver solver = solver_for(m, start_from(fluid), {}, {});
     run_steps(solver, 5);
     EXPECT_NEAR(by_id(solver.state(), &Particles::density_excess)[0], 7.0, 1e-12);
   }
@@ -360,13 +361,13 @@ TEST(ReinitialisationTerm, LeavesAnIsolatedParticleAlone) {
 TEST(AbsentTerms, AFluidAtReferenceDensityAndRestStaysAsItIs) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
-      Method m = full_method();
+      TestMethod m = full_method();
       m.gravity.setZero();
       m.integrator = integrator;
       m.precision = precision;
       Dice dice(9);
       const Fluid fluid = random_block(dice, {-0.5, -0.5}, 6, 6, kH, 0.3, 0.0, 0.0);
-      Solver solver(m, start_from(fluid), walls_around({-0.5, -0.5}, 6, 6, kH), {});
+      Solver solver = solver_for(m, start_from(fluid), walls_around({-0.5, -0.5}, 6, 6, kH), {});
       run_steps(solver, 25);
       const Fluid after = fluid_of(solver.state());
       expect_near(after.x, fluid.x, 0.0, "position");

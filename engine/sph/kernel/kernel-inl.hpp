@@ -9,7 +9,7 @@
 
 #include <hwy/highway.h>
 
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {

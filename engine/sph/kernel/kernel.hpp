@@ -5,9 +5,15 @@
 #include <numbers>
 
 #include "engine/space/space_traits.hpp"
-#include "engine/sph/method/method.hpp"
+#include "engine/space/vec.hpp"
 
 namespace sluice {
+
+/// Smoothing function W(R, h), R = |x_ij| / h.
+enum class KernelKind {
+  truncated_gaussian,  ///< eq. 6: pi^(-d/2) h^-d exp(-R^2), R < 3
+  wendland_c2,         ///< norm h^-d (1 - R/2)^4 (2R + 1), R < 2; 7/(4 pi) in the plane
+};
 
 /// Smoothing functions in d dimensions, dimensionless: W = value(R^2) / h^d and grad W_ij =
 /// -slope(R^2) x_ij / h^(d+2), both zero beyond `support` smoothing lengths. The pair sums use
@@ -47,6 +53,11 @@ struct WendlandC2N {
 
 using TruncatedGaussian = TruncatedGaussianN<kDim>;
 using WendlandC2 = WendlandC2N<kDim>;
+
+/// Distance at which W becomes zero, in smoothing lengths.
+[[nodiscard]] inline double kernel_support(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::support : WendlandC2::support;
+}
 
 /// value(R^2) of the kernel that a method names.
 [[nodiscard]] inline double kernel_value(KernelKind kind, double r_sq) {

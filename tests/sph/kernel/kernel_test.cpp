@@ -1,9 +1,11 @@
-#include "engine/sph/method/kernel.hpp"
+#include "engine/sph/kernel/kernel.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "engine/sph/kernel/discretisation.hpp"
 
 namespace sluice {
 namespace {
@@ -78,8 +80,8 @@ TEST(Kernels, TheMethodsKernelIsTheOneItNames) {
   }
 }
 
-TEST(Kernels, TheMethodsSupportIsWhereItsKernelEnds) {
-  Method m;
+TEST(Kernels, TheSupportOfADiscretisationIsWhereItsKernelEnds) {
+  Discretisation m;
   m.smoothing_length = 0.5;
   m.kernel = KernelKind::truncated_gaussian;
   EXPECT_DOUBLE_EQ(m.support(), TruncatedGaussian::support * 0.5);

@@ -1,12 +1,12 @@
 // The vector forms of the kernels, on every SIMD target, against the scalar ones.
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tests/sph/method/kernel_shapes_test.cpp"
+#define HWY_TARGET_INCLUDE "tests/sph/kernel/kernel_shapes_test.cpp"
 #include <hwy/foreach_target.h>
 // after foreach_target.h
 #include <cstddef>
 
-#include "engine/sph/method/kernel-inl.hpp"
+#include "engine/sph/kernel/kernel-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {

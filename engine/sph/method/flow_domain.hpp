@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "engine/space/vec.hpp"
+
+namespace sluice {
+
+/// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,
+/// and go row by row as the lower edge passes them. Nothing of it is state: it follows from t.
+struct GateMotion {
+  Box place;           ///< m
+  double speed = 0.0;  ///< upwards, m/s
+
+  /// Whether a dummy particle there is gone at time t.
+  [[nodiscard]] bool has_passed(const Vec& p, double t) const {
+    return place.contains(p) && p.y() < place.min.y() + speed * t;
+  }
+};
+
+/// Where the fluid of a run may be: what lies outside is removed. Empty parts bound nothing but the
+/// box.
+struct FlowDomain {
+  Box box;                         ///< a particle that leaves it is removed
+  std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
+                                   ///< no open tank
+  /// m; outside of these x a particle is over the wall from over_from() on and removed at once, so
+  /// that what falls down behind a wall is not taken for a leak.
+  double rim_left = -std::numeric_limits<double>::infinity();
+  double rim_right = std::numeric_limits<double>::infinity();
+
+  /// m; what is outside of the room and below this height is deep in a wall of the tank. Of an open
+  /// tank that is a little below wall_top: what comes over a rim may lie down on it.
+  Box room{Vec::Constant(-std::numeric_limits<double>::infinity()),
+           Vec::Constant(std::numeric_limits<double>::infinity())};
+  double walls_reach = std::numeric_limits<double>::infinity();
+  std::optional<GateMotion> gate;
+  /// Whether a place is in an obstacle or in the gate at time t; empty: there is none. Asked once
+  /// in a while for each particle, on any thread.
+  std::function<bool(const Vec&, double t)> in_solid;
+
+  /// Height from which on a particle beyond a rim's middle is over it, m: little below wall_top,
+  /// for what runs over a rim sinks into its outer edge.
+  [[nodiscard]] double over_from() const {
+    return wall_top ? std::min(*wall_top, walls_reach) : std::numeric_limits<double>::infinity();
+  }
+  /// Whether a particle there stays in the run.
+  [[nodiscard]] bool keeps(const Vec& p) const {
+    const bool over = p.y() >= over_from() && !(p.x() >= rim_left && p.x() <= rim_right);
+    const bool in_wall = p.y() < walls_reach && !room.contains(p);
+    return box.contains(p) && !over && !in_wall;
+  }
+};
+
+}  // namespace sluice
