@@ -18,9 +18,9 @@ enum class Integrator {
 enum class Precision { mixed, double_precision };
 
 /// The scheme and its constants: with a FlowDomain all that the solver must know besides the
-/// particles. Each term
-/// of terms/list.hpp is an optional member; an empty one is left out: its sum is not computed, its
-/// fields are not allocated.
+/// particles.
+/// Each term of terms/list.hpp is an optional member. An empty one is left out: its sum is not
+/// computed, its fields are not allocated.
 struct Method : Discretisation, OptionalTerms<AllTerms> {
   Integrator integrator = Integrator::modified_leap_frog;
   Precision precision = Precision::mixed;
