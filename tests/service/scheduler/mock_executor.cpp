@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <stdexcept>
@@ -108,11 +109,17 @@ int MockExecutor::started() const {
 }
 
 std::shared_ptr<MockWorker> MockExecutor::worker_of(const std::string& job) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(workers_.rbegin(), workers_.rend(),
-                                  [&](const auto& worker) { return worker->job() == job; });
-  if (found == workers_.rend()) throw std::logic_error("no worker was started for job " + job);
-  return *found;
+  constexpr std::chrono::seconds kPatience{20};
+  std::unique_lock lock(mutex_);
+  std::shared_ptr<MockWorker> found;
+  const bool started = has_started_.wait_for(lock, kPatience, [&] {
+    const auto last = std::find_if(workers_.rbegin(), workers_.rend(),
+                                   [&](const auto& worker) { return worker->job() == job; });
+    if (last != workers_.rend()) found = *last;
+    return found != nullptr;
+  });
+  if (!started) throw std::logic_error("no worker was started for job " + job);
+  return found;
 }
 
 std::unique_ptr<RunningProcess> MockExecutor::start(const ProcessCommand& command) {
@@ -124,6 +131,7 @@ std::unique_ptr<RunningProcess> MockExecutor::start(const ProcessCommand& comman
   const auto worker = std::make_shared<MockWorker>(command, static_cast<int>(workers_.size()) + 1);
   workers_.push_back(worker);
   lock.unlock();
+  has_started_.notify_all();
   habits.begins(*worker);
   return std::make_unique<MockProcess>(worker, habits);
 }

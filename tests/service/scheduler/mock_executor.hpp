@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -71,7 +72,8 @@ class MockExecutor : public Executor {
   void refuse(int error) { refusal_ = error; }
   /// How many workers were started.
   [[nodiscard]] int started() const;
-  /// The worker of the job that was started last. Throws std::logic_error when there is none.
+  /// The worker of the job that was started last, waited for. Throws std::logic_error when there is
+  /// none after 20 s.
   [[nodiscard]] std::shared_ptr<MockWorker> worker_of(const std::string& job) const;
 
   [[nodiscard]] std::unique_ptr<RunningProcess> start(const ProcessCommand& command) override;
@@ -80,6 +82,7 @@ class MockExecutor : public Executor {
  private:
   std::atomic<int> refusal_ = 0;
   mutable std::mutex mutex_;
+  mutable std::condition_variable has_started_;
   MockHabits habits_;
   std::vector<std::shared_ptr<MockWorker>> workers_;
 };
