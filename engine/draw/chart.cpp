@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/draw/markup.hpp"
+#include "engine/draw/plot_area.hpp"
 #include "engine/scene/format/code_points.hpp"
 
 namespace sluice {
@@ -25,30 +26,13 @@ constexpr double kTitleHeight = 26.0;
 constexpr double kLegendRow = 20.0;
 constexpr double kLegendKey = 34.0;
 constexpr double kBottom = 50.0;
+constexpr int kTicksAlongX = 8;
+constexpr int kTicksAlongY = 6;
 constexpr double kLetter = 6.9;  ///< mean width of a letter at 13 units: for the legend's rows only
 
 constexpr std::array<std::string_view, 6> kInkNames{"simulation", "experiment", "first",
                                                     "second",     "third",      "fourth"};
 std::string_view class_of(Ink ink) { return kInkNames[static_cast<std::size_t>(ink)]; }
-
-/// From values to places in the view box.
-struct PlotArea {
-  const Chart& chart;
-  double top;
-  double left = kLeft;
-
-  static double share(const Axis& axis, double value) {
-    if (axis.scale == AxisScale::linear) return (value - axis.low) / (axis.high - axis.low);
-    return std::log(value / axis.low) / std::log(axis.high / axis.low);
-  }
-  [[nodiscard]] double x(double value) const {
-    return left + share(chart.x, value) * (kWidth - left - kRight);
-  }
-  [[nodiscard]] double y(double value) const {
-    return top + (1.0 - share(chart.y, value)) * kPlotHeight;
-  }
-  [[nodiscard]] double bottom() const { return top + kPlotHeight; }
-};
 
 struct Point {
   double x, y;
@@ -104,13 +88,11 @@ std::string line_paths(const PlotArea& frame, const std::vector<double>& x,
     points.clear();
   };
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool drawn =
-        std::isfinite(y[i]) && x[i] >= frame.chart.x.low && x[i] <= frame.chart.x.high;
-    if (!drawn) {
+    if (std::isfinite(y[i]) && x[i] >= frame.x_axis.low && x[i] <= frame.x_axis.high) {
+      points.push_back({frame.x(x[i]), tame(frame.y(y[i]))});
+    } else {
       finish();
-      continue;
     }
-    points.push_back({frame.x(x[i]), tame(frame.y(y[i]))});
   }
   finish();
   return paths;
@@ -148,8 +130,8 @@ std::string bar_svg(Ink ink, double x, double from, double to) {
 std::string marks_svg(const PlotArea& frame, const ChartMarks& marks) {
   std::string text;
   for (std::size_t i = 0; i < marks.x.size(); ++i) {
-    const bool drawn = std::isfinite(marks.y[i]) && marks.x[i] >= frame.chart.x.low &&
-                       marks.x[i] <= frame.chart.x.high;
+    const bool drawn = std::isfinite(marks.y[i]) && marks.x[i] >= frame.x_axis.low &&
+                       marks.x[i] <= frame.x_axis.high;
     if (!drawn) continue;
     const double x = frame.x(marks.x[i]);
     const double y = tame(frame.y(marks.y[i]));
@@ -222,59 +204,30 @@ Legend lay_out(const std::vector<LegendEntry>& entries) {
 /// Where the plot begins, so that its label stands clear of its numbers.
 double left_of(const Chart& chart) {
   std::size_t longest = 0;
-  for (const double place : ticks(chart.y, 6)) {
+  for (const double place : ticks(chart.y, kTicksAlongY)) {
     longest = std::max(longest, tick_text(place).size());
   }
   return std::max(kLeft, kYLabel + kDigit * static_cast<double>(longest));
 }
 
-std::string axes_svg(const PlotArea& frame) {
-  std::string text;
-  for (const double place : ticks(frame.chart.x, 8)) {
-    const double x = frame.x(place);
-    text += fmt::format(
-        "<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\" "
-        "text-anchor=\"middle\">{}</text>\n",
-        x, frame.top, frame.bottom(), x, frame.bottom() + 18.0, tick_text(place));
-  }
-  for (const double place : ticks(frame.chart.y, 6)) {
-    const double y = frame.y(place);
-    text += fmt::format(
-        "<path class=\"grid\" d=\"M{} {:.1f}H{:.1f}\"/><text x=\"{}\" y=\"{:.1f}\" "
-        "text-anchor=\"end\">{}</text>\n",
-        frame.left, y, kWidth - kRight, frame.left - 7.0, y + 4.5, tick_text(place));
-  }
-  text += fmt::format(
-      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
-      "<text transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-      0.5 * (frame.left + kWidth - kRight), frame.bottom() + 40.0, escaped(frame.chart.x.label),
-      frame.top + 0.5 * kPlotHeight, escaped(frame.chart.y.label));
-  return text;
-}
-
-std::string notes_svg(const PlotArea& frame) {
+std::string notes_svg(const PlotArea& frame, const std::vector<std::string>& notes) {
   std::string text;
   double y = frame.bottom() + kBottom + 10.0;
-  for (const std::string& note : frame.chart.notes) {
+  for (const std::string& note : notes) {
     text += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", frame.left, y, escaped(note));
     y += kLegendRow;
   }
   return text;
 }
 
-std::string frame_rectangle(const PlotArea& frame) {
-  return fmt::format("x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", frame.left,
-                     frame.top, kWidth - frame.left - kRight, kPlotHeight);
-}
-
-std::string content_svg(const PlotArea& frame) {
+std::string content_svg(const PlotArea& frame, const Chart& chart) {
   std::string text;
-  for (const ChartBand& band : frame.chart.bands) text += band_svg(frame, band);
-  for (const ChartLine& line : frame.chart.lines) {
+  for (const ChartBand& band : chart.bands) text += band_svg(frame, band);
+  for (const ChartLine& line : chart.lines) {
     text += fmt::format("<path class=\"line {}\" d=\"{}\"/>\n", class_of(line.ink),
                         line_paths(frame, line.x, line.y));
   }
-  for (const ChartMarks& marks : frame.chart.marks) text += marks_svg(frame, marks);
+  for (const ChartMarks& marks : chart.marks) text += marks_svg(frame, marks);
   return text;
 }
 
@@ -286,15 +239,21 @@ struct ChartBody {
 
 ChartBody body_of(const Chart& chart) {
   const Legend legend = lay_out(legend_of(chart));
-  const PlotArea frame{chart, kTitleHeight + legend.rows * kLegendRow + 6.0, left_of(chart)};
+  const double left = left_of(chart);
+  const PlotArea frame{.x_axis = chart.x,
+                       .y_axis = chart.y,
+                       .left = left,
+                       .top = kTitleHeight + legend.rows * kLegendRow + 6.0,
+                       .width = kWidth - left - kRight,
+                       .height = kPlotHeight};
   std::string text = fmt::format("<text class=\"title\" x=\"{}\" y=\"17\">{}</text>\n", kLeft,
                                  escaped(chart.title));
   text += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", kTitleHeight, legend.svg);
-  text += axes_svg(frame) + notes_svg(frame);
+  text += frame.axes(TickStyle::grid, kTicksAlongX, kTicksAlongY) + notes_svg(frame, chart.notes);
   text += fmt::format(
       "<clipPath id=\"clip-{}\"><rect {}/></clipPath>\n<g clip-path=\"url(#clip-{})\">\n{}</g>\n",
-      chart.id, frame_rectangle(frame), chart.id, content_svg(frame));
-  text += fmt::format("<rect class=\"frame\" {}/>\n", frame_rectangle(frame));
+      chart.id, frame.rectangle(), chart.id, content_svg(frame, chart));
+  text += fmt::format("<rect class=\"frame\" {}/>\n", frame.rectangle());
   return {std::move(text),
           frame.bottom() + kBottom + kLegendRow * static_cast<double>(chart.notes.size())};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/draw/picture.hpp"
+#include "engine/draw/plot_area.hpp"
 #include "engine/draw/png.hpp"
 #include "engine/report/figures.hpp"
 #include "engine/report/snapshots.hpp"
@@ -18,24 +19,6 @@ constexpr double kTop = 46.0;  ///< holds the title and the scale of colours
 constexpr double kBarWidth = 190.0;
 constexpr double kBottom = 48.0;
 
-struct Plot {
-  Box view;
-  double scale;  ///< units of the view box per metre
-
-  [[nodiscard]] double width() const { return scale * view.size().x(); }
-  [[nodiscard]] double height() const { return scale * view.size().y(); }
-  [[nodiscard]] double x(double metres) const { return kLeft + scale * (metres - view.min.x()); }
-  [[nodiscard]] double y(double metres) const {
-    return kTop + height() - scale * (metres - view.min.y());
-  }
-};
-
-Plot plot_of(const Box& view) {
-  constexpr double kTallest = 420.0;
-  const Vec size = view.size();
-  return {view, std::min((kWidth - kLeft - kRight) / size.x(), kTallest / size.y())};
-}
-
 /// What the numbers of an axis are counted from: whole metres where it lies so far from zero that
 /// its numbers would differ in their last digits only.
 double base_of(double low, double high) {
@@ -48,39 +31,34 @@ std::string label_of(std::string_view name, double base) {
              : fmt::format("{} {} {:.17g} m, m", name, base > 0.0 ? "-" : "+", std::abs(base));
 }
 
-std::string axes(const Plot& plot) {
-  std::string text;
-  const Vec base(base_of(plot.view.min.x(), plot.view.max.x()),
-                 base_of(plot.view.min.y(), plot.view.max.y()));
-  const Axis x{label_of("x", base.x()), plot.view.min.x() - base.x(), plot.view.max.x() - base.x()};
-  const Axis y{label_of("y", base.y()), plot.view.min.y() - base.y(), plot.view.max.y() - base.y()};
-  const double bottom = kTop + plot.height();
-  // As many as there is room for.
-  for (const double place : ticks(x, std::clamp(static_cast<int>(plot.width() / 60.0), 1, 8))) {
-    text += fmt::format(
-        "<path class=\"frame\" d=\"M{0:.1f} {1:.1f}v5\"/><text x=\"{0:.1f}\" y=\"{2:.1f}\" "
-        "text-anchor=\"middle\">{3}</text>\n",
-        plot.x(base.x() + place), bottom, bottom + 19.0, tick_text(place));
-  }
-  for (const double place : ticks(y, std::clamp(static_cast<int>(plot.height() / 40.0), 1, 5))) {
-    text += fmt::format(
-        "<path class=\"frame\" d=\"M{0} {1:.1f}h-5\"/><text x=\"{2}\" y=\"{3:.1f}\" "
-        "text-anchor=\"end\">{4}</text>\n",
-        kLeft, plot.y(base.y() + place), kLeft - 8.0, plot.y(base.y() + place) + 4.5,
-        tick_text(place));
-  }
-  return text + fmt::format(
-                    "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
-                    "<text transform=\"translate(14 {:.1f}) rotate(-90)\" "
-                    "text-anchor=\"middle\">{}</text>\n",
-                    kLeft + 0.5 * plot.width(), bottom + 40.0, x.label, kTop + 0.5 * plot.height(),
-                    y.label);
+Axis axis_of(std::string_view name, double low, double high) {
+  const double base = base_of(low, high);
+  return {label_of(name, base), low - base, high - base};
+}
+
+/// The plot of a view, to scale.
+PlotArea plot_of(const Box& view) {
+  constexpr double kTallest = 420.0;
+  const Vec size = view.size();
+  const double scale = std::min((kWidth - kLeft - kRight) / size.x(), kTallest / size.y());
+  return {.x_axis = axis_of("x", view.min.x(), view.max.x()),
+          .y_axis = axis_of("y", view.min.y(), view.max.y()),
+          .left = kLeft,
+          .top = kTop,
+          .width = scale * size.x(),
+          .height = scale * size.y()};
+}
+
+/// With as many numbers as there is room for.
+std::string axes(const PlotArea& plot) {
+  return plot.axes(TickStyle::outside, std::clamp(static_cast<int>(plot.width / 60.0), 1, 8),
+                   std::clamp(static_cast<int>(plot.height / 40.0), 1, 5));
 }
 
 /// The scale of colours above the picture's right end, in `unit` Pa or m/s.
-std::string colour_bar(const Plot& plot, std::size_t number, double high, double unit,
+std::string colour_bar(const PlotArea& plot, std::size_t number, double high, double unit,
                        std::string_view label) {
-  const double x = std::max(kLeft + plot.width(), kLeft + 300.0) - kBarWidth;
+  const double x = std::max(kLeft + plot.width, kLeft + 300.0) - kBarWidth;
   std::string stops;
   for (int k = 0; k <= 9; ++k) {
     stops +=
@@ -98,11 +76,11 @@ std::string colour_bar(const Plot& plot, std::size_t number, double high, double
   return text;
 }
 
-std::string image(const Plot& plot, const Picture& picture) {
+std::string image(const PlotArea& plot, const Picture& picture) {
   return fmt::format(
       "<image x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\" "
       "href=\"data:image/png;base64,{}\"/>\n",
-      kLeft, kTop, plot.width(), plot.height(), base64(png_of(picture)));
+      kLeft, kTop, plot.width, plot.height, base64(png_of(picture)));
 }
 
 }  // namespace
@@ -114,12 +92,12 @@ std::vector<std::string> picture_svgs(const Report& report, const std::vector<Sn
   const double unit =
       scaled ? scene.method.reference_density * gravity * scene.scales->height : 1.0;
   const double time = scaled ? std::sqrt(scene.scales->height / gravity) : 1.0;
-  const Plot plot = plot_of(picture_view(scene, particle_box(frames)));
   PictureView how;
-  how.view = plot.view;
+  how.view = picture_view(scene, particle_box(frames));
+  const PlotArea plot = plot_of(how.view);
   how.diameter = scene.method.spacing;
   how.high = colour_end(frames, how.quantity);
-  how.width = std::clamp(static_cast<int>(1.5 * plot.width()), 64, 1000);
+  how.width = std::clamp(static_cast<int>(1.5 * plot.width), 64, 1000);
   const Picture solids = draw_solids(scene, how);
   const bool kilo = !scaled && how.high >= 2000.0;
   std::vector<std::string> svgs;
@@ -131,19 +109,15 @@ std::vector<std::string> picture_svgs(const Report& report, const std::vector<Sn
         "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" "
         "role=\"img\">\n<title>Particles at {}, coloured by pressure</title>\n"
         "<text class=\"title\" x=\"{}\" y=\"35.5\">{}</text>\n",
-        kWidth, kTop + plot.height() + kBottom, title, kLeft, title);
-    text += fmt::format(
-        "<rect class=\"canvas\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kLeft,
-        kTop, plot.width(), plot.height());
+        kWidth, kTop + plot.height + kBottom, title, kLeft, title);
+    text += fmt::format("<rect class=\"canvas\" {}/>\n", plot.rectangle());
     Picture picture = solids;
     draw_gate(picture, scene, how, frame.time);
     draw_particles(picture, frame, how);
     text += image(plot, picture) + axes(plot);
     text += colour_bar(plot, svgs.size(), how.high, kilo ? 1e3 : unit,
                        scaled ? "P" : (kilo ? "p, kPa" : "p, Pa"));
-    text += fmt::format(
-        "<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n</svg>\n",
-        kLeft, kTop, plot.width(), plot.height());
+    text += fmt::format("<rect class=\"frame\" {}/>\n</svg>\n", plot.rectangle());
     svgs.push_back(std::move(text));
   }
   return svgs;

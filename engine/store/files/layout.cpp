@@ -6,48 +6,16 @@
 #include <type_traits>
 
 #include "engine/store/disk/errors.hpp"
+#include "engine/store/files/file_values.hpp"
 
 namespace sluice {
 namespace {
 
-constexpr std::string_view kLeapFrog = "modified_leap_frog";
-constexpr std::string_view kKickDriftKick = "kick_drift_kick";
 constexpr const char* kCauses =
     "0 overtopped, 1 leaked; excluded: 2 not finite, 3 too fast, 4 too dense, 5 too thin";
 
 [[noreturn]] void throw_corrupt(const std::string& message) {
   throw StorageError(StorageFault::corrupt, message);
-}
-
-// Values that the file holds in another form than memory does.
-
-std::string to_file(Integrator integrator) {
-  return std::string(integrator == Integrator::modified_leap_frog ? kLeapFrog : kKickDriftKick);
-}
-std::uint64_t to_file(bool flag) { return flag ? 1 : 0; }
-double to_file(double value) { return value; }
-std::uint64_t to_file(std::uint64_t value) { return value; }
-std::uint64_t to_file(RemovalCause cause) { return static_cast<std::uint64_t>(cause); }
-
-void from_file(const std::string& text, Integrator& integrator) {
-  if (text != kLeapFrog && text != kKickDriftKick) {
-    throw_corrupt(fmt::format("attribute 'integrator' of / is '{}', which is no integrator", text));
-  }
-  integrator = text == kLeapFrog ? Integrator::modified_leap_frog : Integrator::kick_drift_kick;
-}
-void from_file(std::uint64_t number, bool& flag) {
-  if (number > 1) {
-    throw_corrupt(fmt::format("{} where 0 or 1 is expected", number));
-  }
-  flag = number == 1;
-}
-void from_file(double number, double& value) { value = number; }
-void from_file(std::uint64_t number, std::uint64_t& value) { value = number; }
-void from_file(std::uint64_t number, RemovalCause& cause) {
-  if (number >= kRemovalCauses) {
-    throw_corrupt(fmt::format("data set /retired/cause holds {}, which is no cause", number));
-  }
-  cause = static_cast<RemovalCause>(number);
 }
 
 /// An attribute that is converted on its way.
