@@ -105,9 +105,9 @@ namespace sluice::HWY_NAMESPACE {
 /// Of both: form 1 has the quadratic part.
 template <int kForm>
 struct Summand<ArtificialViscosity, kForm> : NoSummand {
-  template <class D, class K, class V, class J>
-  static HWY_INLINE V add_along(D d, const K& k, V sum, const PairGeometry<V>& pair,
-                                const PairI<V>& i, const J& j) {
+  template <class D, class K, class V, int Dim, class J>
+  static HWY_INLINE V add_along(D d, const K& k, V sum, const PairGeometry<V, Dim>& pair,
+                                const PairI<V, Dim>& i, const J& j) {
     const V mean_density = hn::MulAdd(hn::Set(d, hn::TFromD<D>(0.5)), j.excess(), i.half);
     const V divisor = mean_density * (pair.r_sq + hn::Set(d, k.epsilon));
     const V approach = hn::Min(pair.approach, hn::Zero(d)) / divisor;

@@ -76,8 +76,8 @@ namespace sluice::HWY_NAMESPACE {
 
 template <>
 struct Summand<DensityDiffusion> : NoSummand {
-  template <class D, class K, class V, class J>
-  static HWY_INLINE V add_exchange(D d, const K& k, V sum, const PairI<V>& i, const J& j) {
+  template <class D, class K, class V, int Dim, class J>
+  static HWY_INLINE V add_exchange(D d, const K& k, V sum, const PairI<V, Dim>& i, const J& j) {
     return hn::MulAdd(hn::Set(d, k.two_delta), j.diffused() - i.diffused, sum);
   }
 };

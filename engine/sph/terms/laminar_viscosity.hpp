@@ -70,8 +70,8 @@ namespace sluice::HWY_NAMESPACE {
 
 template <>
 struct Summand<LaminarViscosity> : NoSummand {
-  template <class D, class K, class V>
-  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V>&, V velocity_i,
+  template <class D, class K, class V, int Dim>
+  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V, Dim>&, V velocity_i,
                                     V velocity_j) {
     return hn::NegMulAdd(g, hn::Set(d, k.two_nu) * (velocity_i - velocity_j), sum);
   }

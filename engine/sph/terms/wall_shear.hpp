@@ -76,9 +76,9 @@ namespace sluice::HWY_NAMESPACE {
 
 template <>
 struct Summand<WallShear> : NoSummand {
-  template <class D, class K, class V>
-  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V>& i, V velocity_i,
-                                    V /*velocity_j*/) {
+  template <class D, class K, class V, int Dim>
+  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V, Dim>& i,
+                                    V velocity_i, V /*velocity_j*/) {
     return hn::NegMulAdd(g, hn::Set(d, k.two_nu_by_speed) * i.speed * velocity_i, sum);
   }
 };
