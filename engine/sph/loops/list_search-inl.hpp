@@ -28,8 +28,8 @@ std::size_t search_boxes(const SearchTask<Dim>& task) {
   using Entry = ListEntry<Dim>;
   const hn::CappedTag<float, kTail> d;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  const auto low = per_axis<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, task.low[axis]); });
-  const auto high = per_axis<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, task.high[axis]); });
+  const auto low = array_of<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, task.low[axis]); });
+  const auto high = array_of<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, task.high[axis]); });
   const auto left_after = hn::Set(d, task.left_after);
   const BoxesView<Dim>& boxes = task.boxes;
   std::size_t found = 0;
@@ -72,8 +72,8 @@ HWY_INLINE PathOf<V, Dim> load_path(const ListPathsView<T, Dim>& paths, std::siz
   constexpr Skin<T> skin = kSkin<T>;
   const V half_life = hn::Set(d, T{0.5} * skin.lifetime);
   const auto velocity =
-      per_axis<Dim>([&](auto axis) HWY_ATTR { return load(paths.velocity[axis] + slot); });
-  const auto middle = per_axis<Dim>([&](auto axis) HWY_ATTR {
+      array_of<Dim>([&](auto axis) HWY_ATTR { return load(paths.velocity[axis] + slot); });
+  const auto middle = array_of<Dim>([&](auto axis) HWY_ATTR {
     return hn::MulAdd(half_life, velocity[axis], load(paths.position[axis] + slot));
   });
   return {middle, velocity,
@@ -86,31 +86,32 @@ std::size_t prune_list(const PruneTask<T, Dim>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
-  const OriginShift<T, Dim> shift(task.origin_cell_size);
   constexpr std::size_t parts = kCluster / B::i_count;
   const auto of_i = [](const T* from) HWY_ATTR { return load_i(from); };
   const auto of_j = [](const T* from) HWY_ATTR { return load_j(from); };
   const V half_life = hn::Set(d, T{0.5} * kSkin<T>.lifetime);
-  PathOf<V, Dim> i[parts];
-  for (std::size_t part = 0; part < parts; ++part) {
-    i[part] = load_path<V>(task.self, kCluster * task.cluster + part * B::i_count, of_i);
-    i[part].skin = i[part].skin + hn::Set(d, task.cut_off);
-  }
+  const auto paths_i = array_of<parts>([&](auto part) HWY_ATTR {
+    PathOf<V, Dim> path =
+        load_path<V>(task.self, kCluster * task.cluster + part * B::i_count, of_i);
+    path.skin = path.skin + hn::Set(d, task.cut_off);
+    return path;
+  });
   std::size_t kept = 0;
   for (std::size_t n = 0; n < task.count; ++n) {
     const std::uint32_t entry = task.candidates[n];
     const std::size_t slot = kCluster * Entry::cluster(entry);
     const std::uint32_t code = Entry::code(entry);
+    const auto away =
+        array_of<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, task.shift->of[axis][code]); });
     bool near = false;
     for (std::size_t k = 0; k < B::j_vectors; ++k) {
-      const auto j = load_path<V>(task.other, slot + k * B::j_lanes, of_j);
-      for (std::size_t part = 0; part < parts; ++part) {
-        const auto x_ij = per_axis<Dim>([&](auto axis) HWY_ATTR {
-          return i[part].middle[axis] + hn::Set(d, shift.of[axis][code]) - j.middle[axis];
-        });
-        const auto v_ij = per_axis<Dim>(
-            [&](auto axis) HWY_ATTR { return i[part].velocity[axis] - j.velocity[axis]; });
-        const V limit = hn::MulAdd(half_life, sum_of_sizes(v_ij), i[part].skin + j.skin);
+      const PathOf<V, Dim> j = load_path<V>(task.other, slot + k * B::j_lanes, of_j);
+      for (const PathOf<V, Dim>& i : paths_i) {
+        const auto x_ij = array_of<Dim>(
+            [&](auto axis) HWY_ATTR { return i.middle[axis] + away[axis] - j.middle[axis]; });
+        const auto v_ij =
+            array_of<Dim>([&](auto axis) HWY_ATTR { return i.velocity[axis] - j.velocity[axis]; });
+        const V limit = hn::MulAdd(half_life, sum_of_sizes(v_ij), i.skin + j.skin);
         near |= !hn::AllFalse(d, dot(x_ij, x_ij) < limit * limit);
       }
     }

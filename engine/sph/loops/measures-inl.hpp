@@ -100,7 +100,7 @@ void measure_rates(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, Motion& o
   StateVec largest = hn::Zero(d);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
-    const auto a = per_axis<Dim>([&](auto axis) HWY_ATTR { return load_acceleration(r, axis, s); });
+    const auto a = array_of<Dim>([&](auto axis) HWY_ATTR { return load_acceleration(r, axis, s); });
     largest = hn::Max(largest, hn::IfThenElseZero(used, plain_dot(a, a)));
   }
   out.acceleration_sq = std::max(out.acceleration_sq, hn::GetLane(hn::MaxOfLanes(d, largest)));
@@ -135,7 +135,7 @@ void sum_energy(const ParticleSpan<Dim>& p, const Method& method, Energy& out) {
   StateVec speeds_sq = hn::Zero(d);
   StateVec lifts = hn::Zero(d);
   StateVec compressions = hn::Zero(d);
-  const auto f = per_axis<Dim>([&](auto axis) HWY_ATTR {
+  const auto f = array_of<Dim>([&](auto axis) HWY_ATTR {
     return hn::Set(d, method.gravity[static_cast<Eigen::Index>(axis)]);
   });
   const StateVec rho_0 = hn::Set(d, method.reference_density);
@@ -143,8 +143,8 @@ void sum_energy(const ParticleSpan<Dim>& p, const Method& method, Energy& out) {
     const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
     const auto at = [&](const double* field)
                         HWY_ATTR { return hn::IfThenElseZero(used, hn::LoadU(d, field + s)); };
-    const auto v = per_axis<Dim>([&](auto axis) HWY_ATTR { return at(p.velocity[axis]); });
-    const auto x = per_axis<Dim>([&](auto axis) HWY_ATTR { return at(p.position[axis]); });
+    const auto v = array_of<Dim>([&](auto axis) HWY_ATTR { return at(p.velocity[axis]); });
+    const auto x = array_of<Dim>([&](auto axis) HWY_ATTR { return at(p.position[axis]); });
     speeds_sq = speeds_sq + plain_dot(v, v);
     lifts = lifts - plain_dot(f, x);
     compressions = compressions + compression(at(p.density_excess) / rho_0);

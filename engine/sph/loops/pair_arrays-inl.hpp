@@ -53,7 +53,7 @@ template <typename T, int Dim>
 void write_places(const ParticleSpan<Dim>& p, const PairScales<Dim>& k, PairArrays<T, Dim>& out) {
   const auto write = [&](auto d, std::size_t begin, std::size_t end) HWY_ATTR {
     const VecN<Dim> origin = k.grid->origin_cell_center(k.origin_cell[begin / kCluster]);
-    for_axes<Dim>([&](auto axis) HWY_ATTR {
+    unroll<Dim>([&](auto axis) HWY_ATTR {
       write_relative(d, begin, end, out.position[axis].data(), p.position[axis],
                      origin[static_cast<Eigen::Index>(axis)], k.inverse_length);
     });
@@ -81,7 +81,7 @@ void write_velocities(const ParticleSpan<Dim>& p, const PairScales<Dim>& k,
   const auto scaled = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT v) HWY_ATTR {
     for (std::size_t s = p.begin; s < p.end; ++s) to[s] = static_cast<T>(v[s] * k.inverse_speed);
   };
-  for_axes<Dim>([&](auto axis) HWY_ATTR { scaled(out.velocity[axis].data(), p.velocity[axis]); });
+  unroll<Dim>([&](auto axis) HWY_ATTR { scaled(out.velocity[axis].data(), p.velocity[axis]); });
 }
 
 template <typename T, int Dim>
@@ -110,7 +110,7 @@ void compare_with_paths(const ParticleSpan<Dim>& p, const PairArrays<T, Dim>& no
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto x = load_axes<Dim>(d, paths.position, s);
     const auto v = load_axes<Dim>(d, paths.velocity, s);
-    const auto off = per_axis<Dim>([&](auto axis) HWY_ATTR {
+    const auto off = array_of<Dim>([&](auto axis) HWY_ATTR {
       return hn::NegMulAdd(v[axis], t, hn::LoadU(d, now.position[axis].data() + s) - x[axis]);
     });
     const auto limit =

@@ -20,7 +20,7 @@
 #include <cstdint>
 
 #include "engine/space/dot-inl.hpp"
-#include "engine/space/per_axis-inl.hpp"
+#include "engine/space/unroll-inl.hpp"
 #include "engine/sph/loops/sweeps.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -122,34 +122,15 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, const std::array<V, kCount>&
     const auto sums = hn::ConcatLowerLower(half, b, a) + hn::ConcatUpperUpper(half, b, a);
     hn::StoreU(hn::LoadU(half, to) - sums, half, to);
   } else {
-    for_axes<kCount>([&](auto block)
-                         HWY_ATTR { subtract_from_j(to + kCluster * block, blocks[block]); });
+    unroll<kCount>([&](auto block)
+                       HWY_ATTR { subtract_from_j(to + kCluster * block, blocks[block]); });
   }
 }
 
-/// Positions of the particles i as seen from the origin cell of a cluster j: for each axis what the
-/// codes of ListEntry add to them.
-template <typename T, int Dim>
-struct OriginShift {
-  std::array<std::array<T, ListEntry<Dim>::kCodes>, Dim> of;
-  explicit OriginShift(T origin_cell_size) {
-    for (std::uint32_t code = 0; code < ListEntry<Dim>::kCodes; ++code) {
-      const OriginStep<Dim> step = ListEntry<Dim>::step_of(code);
-      for (std::size_t axis = 0; axis < Dim; ++axis) {
-        of[axis][code] = -static_cast<T>(step[axis]) * origin_cell_size;
-      }
-    }
-  }
-};
-
-/// The same particles i or j of several arrays, one for each axis.
+/// The same particles i of several arrays, one for each axis.
 template <int Dim, typename T>
 HWY_INLINE auto load_i(const std::array<const T*, Dim>& from, std::size_t slot) {
-  return per_axis<Dim>([&](auto axis) HWY_ATTR { return load_i(from[axis] + slot); });
-}
-template <int Dim, typename T>
-HWY_INLINE auto load_j(const std::array<const T*, Dim>& from, std::size_t slot) {
-  return per_axis<Dim>([&](auto axis) HWY_ATTR { return load_j(from[axis] + slot); });
+  return array_of<Dim>([&](auto axis) HWY_ATTR { return load_i(from[axis] + slot); });
 }
 
 /// Place in the sums of the particles j of an entry, or of its vector `part`.
@@ -176,12 +157,12 @@ HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c,
     const std::uint32_t code = Entry::code(entries[n]);
     if (HWY_UNLIKELY(code != seen_from)) {
       seen_from = code;
-      for_axes<Dim>([&](auto axis)
-                        HWY_ATTR { x_seen[axis] = x_i[axis] + hn::Set(d, shift.of[axis][code]); });
+      unroll<Dim>([&](auto axis)
+                      HWY_ATTR { x_seen[axis] = x_i[axis] + hn::Set(d, shift.of[axis][code]); });
     }
     for (std::size_t part = 0; part < B::j_vectors; ++part) {
       const std::size_t j = slot + part * B::j_lanes;
-      const auto x_ij = per_axis<Dim>(
+      const auto x_ij = array_of<Dim>(
           [&](auto axis) HWY_ATTR { return x_seen[axis] - load_j(other.position[axis] + j); });
       body(j, x_ij, n, part);
     }

@@ -38,7 +38,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
     PairGeometry<V, Dim> pair{x_ij, dot(x_ij, x_ij), hn::Zero(d)};
     const V g = Shape::slope(d, pair.r_sq);
     const auto v_ij =
-        per_axis<Dim>([&](auto axis) HWY_ATTR { return i.velocity[axis] - j.velocity(axis); });
+        array_of<Dim>([&](auto axis) HWY_ATTR { return i.velocity[axis] - j.velocity(axis); });
     pair.approach = dot(v_ij, x_ij);
     std::array<V, blocks.count> of_j;
     if constexpr (Rates::density) {
@@ -47,7 +47,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
       const V volume_j = g * j.volume();
       of_i[blocks.density] = hn::MulAdd(volume_j, summand, of_i[blocks.density]);
       if constexpr (Rates::shifting) {
-        for_axes<Dim>([&](auto axis) HWY_ATTR {
+        unroll<Dim>([&](auto axis) HWY_ATTR {
           V& along = of_i[blocks.vector[axis]];
           along = hn::MulAdd(volume_j, ShiftingSummands::component(pair, axis), along);
         });
@@ -59,7 +59,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
         const V volume_i = g * i.volume;
         of_j[blocks.density] = volume_i * Continuity::add_for_j(exchange, pair, density);
         if constexpr (Rates::shifting) {
-          for_axes<Dim>([&](auto axis) HWY_ATTR {
+          unroll<Dim>([&](auto axis) HWY_ATTR {
             of_j[blocks.vector[axis]] = volume_i * ShiftingSummands::component(pair, axis);
           });
           of_j[blocks.trace] = hn::Neg(volume_i * ShiftingSummands::trace(pair));
@@ -69,7 +69,7 @@ HWY_INLINE void add_rates(const PairList::Chunk& list, std::size_t c, const Pair
     if constexpr (Rates::acceleration) {
       V summand = PressureGradient::summand(i.pressure_term, j.pressure_term());
       summand = terms.add_along(summand, pair, i, j) * g;
-      for_axes<Dim>([&](auto axis) HWY_ATTR {
+      unroll<Dim>([&](auto axis) HWY_ATTR {
         const V along =
             terms.add_component(summand * x_ij[axis], g, i, i.velocity[axis], j.velocity(axis));
         of_i[blocks.vector[axis]] = of_i[blocks.vector[axis]] + along;
@@ -92,7 +92,7 @@ void sum_rates(const SweepTask<T, Dim>& task) {
   constexpr const SumBlocks<Dim>& blocks = Rates::blocks;
   const typename Rates::template Terms<Neighbours::fluid, T> in_fluid{task.constants->in_fluid};
   const typename Rates::template Terms<Neighbours::walls, T> at_walls{task.constants->at_walls};
-  const OriginShift<T, Dim> shift(task.constants->origin_cell_size);
+  const OriginShift<T, Dim>& shift = task.constants->origin_shift;
   std::fill_n(task.sums, blocks.stride * task.to_fluid->places(), T{});
 
   for (std::size_t c = 0; c < task.clusters; ++c) {
@@ -109,7 +109,7 @@ void sum_rates(const SweepTask<T, Dim>& task) {
       i.volume = load_i(self.volume + slot);
       i.diffused = load_i(self.diffused + slot);
       i.pressure_term = load_i(self.pressure_term + slot);
-      auto of_i = per_axis<blocks.count>([&](auto) HWY_ATTR { return hn::Zero(d); });
+      auto of_i = array_of<blocks.count>([&](auto) HWY_ATTR { return hn::Zero(d); });
 
       add_rates<Shape, Rates, decltype(in_fluid), Dim>(*task.to_fluid, c, task.fluid, shift, x_i,
                                                        in_fluid, i, of_i, task.sums);
@@ -118,8 +118,8 @@ void sum_rates(const SweepTask<T, Dim>& task) {
                                                          at_walls, i, of_i, task.sums);
       }
       T* const sums = task.sums + blocks.stride * c + part;
-      for_axes<blocks.count>([&](auto block)
-                                 HWY_ATTR { add_lanes(of_i[block], sums + kCluster * block); });
+      unroll<blocks.count>([&](auto block)
+                               HWY_ATTR { add_lanes(of_i[block], sums + kCluster * block); });
     }
   }
 }

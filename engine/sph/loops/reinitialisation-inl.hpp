@@ -26,7 +26,7 @@ void sum_reinitialisation(const SweepTask<T, Dim>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
-  const OriginShift<T, Dim> shift(task.constants->origin_cell_size);
+  const OriginShift<T, Dim>& shift = task.constants->origin_shift;
   constexpr const SumBlocks<Dim>& blocks = kReinitialisationSums<Dim>;
   std::fill_n(task.sums, blocks.stride * task.to_fluid->places(), T{});
   for (std::size_t c = 0; c < task.clusters; ++c) {

@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "engine/space/dot-inl.hpp"
-#include "engine/space/per_axis-inl.hpp"
+#include "engine/space/unroll-inl.hpp"
 #include "engine/sph/loops/updates.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -55,7 +55,7 @@ HWY_INLINE StateVec load_acceleration(const Rates<T, Dim>& rates, std::size_t ax
 /// The components of a vector field of the particles from slot s on.
 template <int Dim, class D, class Pointer>
 HWY_INLINE auto load_axes(D d, const std::array<Pointer, Dim>& field, std::size_t s) {
-  return per_axis<Dim>([&](auto axis) HWY_ATTR { return hn::LoadU(d, field[axis] + s); });
+  return array_of<Dim>([&](auto axis) HWY_ATTR { return hn::LoadU(d, field[axis] + s); });
 }
 
 template <class V>

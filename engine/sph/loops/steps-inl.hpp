@@ -33,7 +33,7 @@ void leap_frog(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, double dt_mea
   };
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     kick(p.density_excess_half, p.density_excess, s, load_density_rate(r, s));
-    for_axes<Dim>([&](auto axis) HWY_ATTR {
+    unroll<Dim>([&](auto axis) HWY_ATTR {
       const StateVec v =
           kick(p.velocity_half[axis], p.velocity[axis], s, load_acceleration(r, axis, s));
       add_scaled(p.position[axis] + s, v, dt);
@@ -50,7 +50,7 @@ void kick_drift(const ParticleSpan<Dim>& p, double dt) {
     add_scaled(x + s, hn::LoadU(d, v + s), 0.5 * dt);
   };
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    for_axes<Dim>([&](auto axis) HWY_ATTR {
+    unroll<Dim>([&](auto axis) HWY_ATTR {
       along(p.position[axis], p.velocity[axis], p.acceleration[axis], s);
     });
   }
@@ -61,7 +61,7 @@ void density_drift(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, double dt
   const State d;
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     add_scaled(p.density_excess + s, load_density_rate(r, s), dt);
-    for_axes<Dim>([&](auto axis) HWY_ATTR {
+    unroll<Dim>([&](auto axis) HWY_ATTR {
       add_scaled(p.position[axis] + s, hn::LoadU(d, p.velocity[axis] + s), 0.5 * dt);
     });
   }
@@ -88,12 +88,12 @@ void shift(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, const Shift<Dim>&
     const StateVec inside = (trace - hn::Set(d, kSurfaceTrace<Dim>)) * hn::Set(d, kPerTrace);
     const StateVec length =
         hn::Min(hn::Max(inside, zero), one) * hn::Sqrt(plain_dot(v, v)) * hn::Set(d, k.per_speed);
-    const auto wanted = per_axis<Dim>(
+    const auto wanted = array_of<Dim>(
         [&](auto axis) HWY_ATTR { return load_sums(r, r.blocks.vector[axis], s) * length; });
     const StateVec way = hn::Sqrt(plain_dot(wanted, wanted));
     const StateVec most = hn::Set(d, k.most);
     const StateVec held = hn::IfThenElse(way > most, most / way, one);
-    for_axes<Dim>([&](auto axis) HWY_ATTR {
+    unroll<Dim>([&](auto axis) HWY_ATTR {
       const StateVec along = wanted[axis] * held;
       add_scaled(p.position[axis] + s, along, 1.0);
       add_scaled(p.density_excess + s, along, k.hydrostatic[static_cast<Eigen::Index>(axis)]);
@@ -110,7 +110,7 @@ void kick(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, double dt) {
     add_scaled(v + s, rate, 0.5 * dt);
   };
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    for_axes<Dim>([&](auto axis) HWY_ATTR {
+    unroll<Dim>([&](auto axis) HWY_ATTR {
       along(p.acceleration[axis], p.velocity[axis], s, load_acceleration(r, axis, s));
     });
   }

@@ -74,7 +74,7 @@ template <class Shape, int Dim>
 PointSums sum_around(const Particles& p, const Surroundings<Dim>& around) {
   const State d;
   const StateVec inverse_h = hn::Set(d, 1.0 / around.smoothing_length);
-  const auto point = per_axis<Dim>([&](auto axis) HWY_ATTR {
+  const auto point = array_of<Dim>([&](auto axis) HWY_ATTR {
     return hn::Set(d, around.point[static_cast<Eigen::Index>(axis)]);
   });
   const StateVec rho_0 = hn::Set(d, around.reference_density);
@@ -83,7 +83,7 @@ PointSums sum_around(const Particles& p, const Surroundings<Dim>& around) {
   StateVec volumes = hn::Zero(d);
   const auto add = [&](std::size_t s) HWY_ATTR {
     const auto used = hn::LoadU(d, p.id.data() + s) >= hn::Zero(d);
-    const auto off = per_axis<Dim>([&](auto axis) HWY_ATTR {
+    const auto off = array_of<Dim>([&](auto axis) HWY_ATTR {
       return (hn::LoadU(d, p.position[axis].data() + s) - point[axis]) * inverse_h;
     });
     const StateVec w = hn::IfThenElseZero(used, Shape::value(d, plain_dot(off, off)));

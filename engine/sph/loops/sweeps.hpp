@@ -26,8 +26,8 @@ using RateConstants = decltype(constants_of<T>(RateTerms{}));
 template <typename T, int Dim>
 struct TermConstants {
   RateConstants<T> in_fluid, at_walls;
-  std::array<T, Dim> gravity{};  ///< f h/c^2
-  T origin_cell_size{};          ///< in h
+  std::array<T, Dim> gravity{};      ///< f h/c^2
+  OriginShift<T, Dim> origin_shift;  ///< in h
 };
 
 /// One chunk of clusters i against the clusters j of its lists.
@@ -67,7 +67,7 @@ template <typename T, int Dim>
 struct PruneTask {
   ListPathsView<T, Dim> self, other;
   T cut_off{};  ///< support in h
-  T origin_cell_size{};
+  const OriginShift<T, Dim>* shift = nullptr;
   std::size_t cluster = 0;
   const std::uint32_t* candidates = nullptr;  ///< entries to test, in order
   std::size_t count = 0;

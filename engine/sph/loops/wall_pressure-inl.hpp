@@ -25,7 +25,7 @@ void sum_wall_pressure(const SweepTask<T, Dim>& task) {
   using B = Blocks<T>;
   using V = typename B::V;
   const typename B::D d;
-  const OriginShift<T, Dim> shift(task.constants->origin_cell_size);
+  const OriginShift<T, Dim>& shift = task.constants->origin_shift;
   const WallPressureSummand<T, Dim> term{task.constants->gravity};
   for (std::size_t c = 0; c < task.clusters; ++c) {
     for (std::size_t part = 0; part < kCluster; part += B::i_count) {

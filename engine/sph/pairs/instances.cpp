@@ -1,5 +1,6 @@
 // The templates of this room for the dimensions that runs have.
 
+#include "engine/sph/pairs/grid-inl.hpp"
 #include "engine/sph/pairs/layout-inl.hpp"
 
 namespace sluice {

@@ -52,6 +52,23 @@ struct ListEntry {
   }
 };
 
+/// What each code of ListEntry adds to the positions of the particles i, for each axis, so that
+/// they are seen from the origin cell of cluster j. In the unit of the cell size.
+template <typename T, int Dim>
+struct OriginShift {
+  std::array<std::array<T, ListEntry<Dim>::kCodes>, Dim> of{};
+
+  OriginShift() = default;
+  explicit OriginShift(T origin_cell_size) {
+    for (std::uint32_t code = 0; code < ListEntry<Dim>::kCodes; ++code) {
+      const OriginStep<Dim> step = ListEntry<Dim>::step_of(code);
+      for (std::size_t axis = 0; axis < Dim; ++axis) {
+        of[axis][code] = -static_cast<T>(step[axis]) * origin_cell_size;
+      }
+    }
+  }
+};
+
 /// For every cluster of a set, the clusters of another that may hold a neighbour, chunk by chunk.
 /// A list of a set with itself is mutual: it holds each pair of clusters once, and what is summed
 /// over it goes to both. Every chunk then has sums of its own, for its clusters and for its halos,

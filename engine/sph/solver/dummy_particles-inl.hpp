@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "engine/sph/solver/cluster_bounds-inl.hpp"
 #include "engine/sph/solver/dummy_particles.hpp"
-#include "engine/sph/solver/neighbours-inl.hpp"
 
 namespace sluice {
 

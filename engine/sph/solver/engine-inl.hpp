@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/sph/solver/cluster_bounds-inl.hpp"
 #include "engine/sph/solver/dummy_particles-inl.hpp"
 #include "engine/sph/solver/engine_of.hpp"
 #include "engine/sph/solver/engine_order-inl.hpp"

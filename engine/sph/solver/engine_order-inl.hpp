@@ -150,8 +150,8 @@ void Engine<T, Dim>::make_lists() {
                          paths_.view());
   });
   bounds_.assign_rows(team_, layout_);
-  const PairRange<T> range{static_cast<T>(method_.support_ratio() + engine_order::kListSlack),
-                           constants_.origin_cell_size, grid_.has_one_origin_cell()};
+  const PairRange<T, Dim> range{static_cast<T>(method_.support_ratio() + engine_order::kListSlack),
+                                constants_.origin_shift, grid_.has_one_origin_cell()};
   const PairSet<T, Dim> fluid{layout_, bounds_, paths_.view()};
   const PairSet<T, Dim> wall = walls_.set();
   const std::array lists{NewPairList<T, Dim>{&fluid, &fluid, &fluid_to_fluid_},

@@ -38,7 +38,7 @@ template <typename T, int Dim>
   for (std::size_t axis = 0; axis < Dim; ++axis) {
     k.gravity[axis] = static_cast<T>(gravity[static_cast<Eigen::Index>(axis)]);
   }
-  k.origin_cell_size = static_cast<T>(origin_cell_size / m.smoothing_length);
+  k.origin_shift = OriginShift<T, Dim>(static_cast<T>(origin_cell_size / m.smoothing_length));
   return k;
 }
 

@@ -20,7 +20,7 @@
 #include <cstddef>
 
 #include "engine/space/dot-inl.hpp"
-#include "engine/space/per_axis-inl.hpp"
+#include "engine/space/unroll-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {

@@ -30,7 +30,7 @@ struct WallPressureSummand {
   template <class D, class V>
   HWY_INLINE V summand(D d, const std::array<V, Dim>& x_wf, V excess_f) const {
     const V head =
-        dot(per_axis<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, gravity[axis]); }), x_wf);
+        dot(array_of<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, gravity[axis]); }), x_wf);
     return hn::MulAdd(hn::Set(d, T{1}) + excess_f, head, excess_f);
   }
 };

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/sph/pairs/grid-inl.hpp"
 #include "engine/sph/pairs/layout-inl.hpp"
 #include "engine/sph/pairs/pair_list.hpp"
 #include "tests/space/dimensions.hpp"
