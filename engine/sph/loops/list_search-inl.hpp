@@ -71,13 +71,15 @@ HWY_INLINE PathOf<V, Dim> load_path(const ListPathsView<T, Dim>& paths, std::siz
   const typename Blocks<T>::D d;
   constexpr Skin<T> skin = kSkin<T>;
   const V half_life = hn::Set(d, T{0.5} * skin.lifetime);
-  const auto velocity =
-      array_of<Dim>([&](auto axis) HWY_ATTR { return load(paths.velocity[axis] + slot); });
-  const auto middle = array_of<Dim>([&](auto axis) HWY_ATTR {
-    return hn::MulAdd(half_life, velocity[axis], load(paths.position[axis] + slot));
+  PathOf<V, Dim> path;
+  unroll<Dim>([&](auto axis) HWY_ATTR {
+    path.velocity[axis] = load(paths.velocity[axis] + slot);
+    path.middle[axis] =
+        hn::MulAdd(half_life, path.velocity[axis], load(paths.position[axis] + slot));
   });
-  return {middle, velocity,
-          hn::MulAdd(hn::Set(d, skin.per_speed), sum_of_sizes(velocity), hn::Set(d, skin.least))};
+  path.skin =
+      hn::MulAdd(hn::Set(d, skin.per_speed), sum_of_sizes(path.velocity), hn::Set(d, skin.least));
+  return path;
 }
 
 template <typename T, int Dim>
@@ -90,11 +92,11 @@ std::size_t prune_list(const PruneTask<T, Dim>& task) {
   const auto of_i = [](const T* from) HWY_ATTR { return load_i(from); };
   const auto of_j = [](const T* from) HWY_ATTR { return load_j(from); };
   const V half_life = hn::Set(d, T{0.5} * kSkin<T>.lifetime);
-  const auto paths_i = array_of<parts>([&](auto part) HWY_ATTR {
-    PathOf<V, Dim> path =
-        load_path<V>(task.self, kCluster * task.cluster + part * B::i_count, of_i);
-    path.skin = path.skin + hn::Set(d, task.cut_off);
-    return path;
+  PathOf<V, Dim> paths_i[parts];
+  unroll<parts>([&](auto part) HWY_ATTR {
+    const std::size_t slot = kCluster * task.cluster + part * B::i_count;
+    paths_i[part] = load_path<V>(task.self, slot, of_i);
+    paths_i[part].skin = paths_i[part].skin + hn::Set(d, task.cut_off);
   });
   std::size_t kept = 0;
   for (std::size_t n = 0; n < task.count; ++n) {

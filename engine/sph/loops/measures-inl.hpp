@@ -35,7 +35,7 @@ HWY_INLINE auto within(D d, const BoxN<Dim>& box, const std::array<V, Dim>& x) {
 }
 
 template <int Dim>
-void measure(const ParticleSpan<Dim>& p, const Method& method, const FlowDomain& domain,
+void measure(const ParticleSpan<Dim>& p, const MethodN<Dim>& method, const FlowDomainN<Dim>& domain,
              Motion& out) {
   using D = hn::ScalableTag<double>;
   const D d;
@@ -130,7 +130,7 @@ HWY_INLINE StateVec compression(StateVec s) {
 }
 
 template <int Dim>
-void sum_energy(const ParticleSpan<Dim>& p, const Method& method, Energy& out) {
+void sum_energy(const ParticleSpan<Dim>& p, const MethodN<Dim>& method, Energy& out) {
   const State d;
   StateVec speeds_sq = hn::Zero(d);
   StateVec lifts = hn::Zero(d);

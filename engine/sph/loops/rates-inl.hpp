@@ -128,13 +128,13 @@ void sum_rates(const SweepTask<T, Dim>& task) {
 /// not sum is not a choice, nor a second term that holds the fluid at walls: each loop is compiled
 /// once.
 template <class Shape, class Rates, typename T, int Dim>
-typename Sweeps<T, Dim>::Sweep select_rates(const Method&, TermList<>) {
+typename Sweeps<T, Dim>::Sweep select_rates(const MethodN<Dim>&, TermList<>) {
   return &sum_rates<Shape, Rates, T, Dim>;
 }
 template <class Shape, class Rates, typename T, int Dim, class First, class... Rest>
-typename Sweeps<T, Dim>::Sweep select_rates(const Method& m, TermList<First, Rest...>) {
+typename Sweeps<T, Dim>::Sweep select_rates(const MethodN<Dim>& m, TermList<First, Rest...>) {
   constexpr Summation summation = First::kSummation;
-  const auto& term = m.term<First>();
+  const auto& term = m.template term<First>();
   if constexpr (Rates::template sums<summation.rate>) {
     typename Sweeps<T, Dim>::Sweep found = nullptr;
     const auto try_form = [&]<int kForm>() {
@@ -151,7 +151,7 @@ typename Sweeps<T, Dim>::Sweep select_rates(const Method& m, TermList<First, Res
   return select_rates<Shape, Rates, T, Dim>(m, TermList<Rest...>{});
 }
 template <class Shape, Sums kSums, typename T, int Dim, bool kShifting = false>
-typename Sweeps<T, Dim>::Sweep select_rates(const Method& m) {
+typename Sweeps<T, Dim>::Sweep select_rates(const MethodN<Dim>& m) {
   return select_rates<Shape, RateSums<Dim, kSums, kShifting>, T, Dim>(m, RateTerms{});
 }
 

@@ -71,7 +71,7 @@ HWY_INLINE void for_clusters_around(const Surroundings<Dim>& around, const Body&
 }
 
 template <class Shape, int Dim>
-PointSums sum_around(const Particles& p, const Surroundings<Dim>& around) {
+PointSums sum_around(const ParticlesN<Dim>& p, const Surroundings<Dim>& around) {
   const State d;
   const StateVec inverse_h = hn::Set(d, 1.0 / around.smoothing_length);
   const auto point = array_of<Dim>([&](auto axis) HWY_ATTR {

@@ -23,7 +23,7 @@ namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <class Shape, typename T, int Dim>
-void fill_sweeps(const Method& method, Sweeps<T, Dim>& out) {
+void fill_sweeps(const MethodN<Dim>& method, Sweeps<T, Dim>& out) {
   if (method.integrator == Integrator::modified_leap_frog) {
     out.density_and_acceleration = select_rates<Shape, Sums::both, T, Dim>(method);
   } else {
@@ -40,7 +40,7 @@ void fill_sweeps(const Method& method, Sweeps<T, Dim>& out) {
 }
 
 template <typename T, int Dim>
-void fill(const Method& method, Sweeps<T, Dim>& out) {
+void fill(const MethodN<Dim>& method, Sweeps<T, Dim>& out) {
   fill_updates(out.updates);
   if (method.kernel == KernelKind::truncated_gaussian) {
     fill_sweeps<GaussianShape>(method, out);

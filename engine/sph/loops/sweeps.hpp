@@ -98,7 +98,7 @@ struct Sweeps {
 /// Throws std::invalid_argument when `target` is neither empty nor one that this machine runs,
 /// naming those it does.
 template <typename T, int Dim>
-[[nodiscard]] Sweeps<T, Dim> select_sweeps(const Method& method, const std::string& target);
+[[nodiscard]] Sweeps<T, Dim> select_sweeps(const MethodN<Dim>& method, const std::string& target);
 
 template <>
 Sweeps<float, 2> select_sweeps<float, 2>(const Method&, const std::string&);

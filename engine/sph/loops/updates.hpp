@@ -125,7 +125,7 @@ struct PointSums {
 };
 
 template <int Dim>
-using SumAround = PointSums (*)(const Particles&, const Surroundings<Dim>&);
+using SumAround = PointSums (*)(const ParticlesN<Dim>&, const Surroundings<Dim>&);
 
 /// The loops over particles, one SIMD target; T is the type of the pair sums. All state is double.
 template <typename T, int Dim>
@@ -159,7 +159,8 @@ struct Updates {
   void (*reinitialise)(const ParticleSpan<Dim>&, const Rates<T, Dim>&,
                        double reference_density) = nullptr;
   /// Speeds, densities, the front and who is to be removed.
-  void (*measure)(const ParticleSpan<Dim>&, const Method&, const FlowDomain&, Motion&) = nullptr;
+  void (*measure)(const ParticleSpan<Dim>&, const MethodN<Dim>&, const FlowDomainN<Dim>&,
+                  Motion&) = nullptr;
   /// Largest acceleration of the state.
   void (*measure_acceleration)(const ParticleSpan<Dim>&, Motion&) = nullptr;
   /// Largest acceleration of the rates.
@@ -167,7 +168,7 @@ struct Updates {
   /// Over the clusters of the rows that are near the point, in memory order.
   SumAround<Dim> sum_around = nullptr;
   /// Adds the energy of the particles.
-  void (*sum_energy)(const ParticleSpan<Dim>&, const Method&, Energy&) = nullptr;
+  void (*sum_energy)(const ParticleSpan<Dim>&, const MethodN<Dim>&, Energy&) = nullptr;
 };
 
 }  // namespace sluice

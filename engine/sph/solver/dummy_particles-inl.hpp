@@ -11,7 +11,8 @@ namespace sluice {
 
 template <typename T, int Dim>
 DummyParticles<T, Dim>::DummyParticles(ThreadTeam& team, const Grid<Dim>& grid,
-                                       const Method& method, const std::optional<GateMotion>& gate,
+                                       const MethodN<Dim>& method,
+                                       const std::optional<GateMotionN<Dim>>& gate,
                                        const std::vector<VecN<Dim>>& places)
     : count_(places.size()) {
   if (places.empty()) return;
@@ -58,7 +59,7 @@ DummyParticles<T, Dim>::DummyParticles(ThreadTeam& team, const Grid<Dim>& grid,
 }
 
 template <typename T, int Dim>
-void DummyParticles<T, Dim>::sum_pressures(ThreadTeam& team, const Method& method,
+void DummyParticles<T, Dim>::sum_pressures(ThreadTeam& team, const MethodN<Dim>& method,
                                            const Sweeps<T, Dim>& sweeps,
                                            const TermConstants<T, Dim>& constants,
                                            const PairView<T, Dim>& fluid, const PairList& list) {
@@ -85,7 +86,7 @@ void DummyParticles<T, Dim>::sum_pressures(ThreadTeam& team, const Method& metho
 }
 
 template <typename T, int Dim>
-void DummyParticles<T, Dim>::lift(const std::optional<GateMotion>& gate, double time) {
+void DummyParticles<T, Dim>::lift(const std::optional<GateMotionN<Dim>>& gate, double time) {
   std::erase_if(lifted_, [&](const GateParticle& p) {
     if (!gate->has_passed(p.place, time)) return false;
     for (AlignedArray<T>& along : arrays_.position)
@@ -97,7 +98,7 @@ void DummyParticles<T, Dim>::lift(const std::optional<GateMotion>& gate, double 
 }
 
 template <typename T, int Dim>
-std::vector<double> DummyParticles<T, Dim>::pressures(const Method& method) const {
+std::vector<double> DummyParticles<T, Dim>::pressures(const MethodN<Dim>& method) const {
   std::vector<double> result(count_, 0.0);
   const double scale = method.reference_density * method.sound_speed * method.sound_speed;
   for (std::size_t s = 0; s < layout_.slots(); ++s) {

@@ -21,8 +21,8 @@ template <typename T, int Dim>
 class DummyParticles {
  public:
   /// `places` in m.
-  DummyParticles(ThreadTeam& team, const Grid<Dim>& grid, const Method& method,
-                 const std::optional<GateMotion>& gate, const std::vector<VecN<Dim>>& places);
+  DummyParticles(ThreadTeam& team, const Grid<Dim>& grid, const MethodN<Dim>& method,
+                 const std::optional<GateMotionN<Dim>>& gate, const std::vector<VecN<Dim>>& places);
 
   [[nodiscard]] bool empty() const { return layout_.slots() == 0; }
   [[nodiscard]] PairView<T, Dim> view() const { return arrays_.view(); }
@@ -33,16 +33,16 @@ class DummyParticles {
 
   /// eq. 9 over `list`, of this set and the fluid, and from it the density, volume and stress of
   /// every particle (eq. 3).
-  void sum_pressures(ThreadTeam& team, const Method& method, const Sweeps<T, Dim>& sweeps,
+  void sum_pressures(ThreadTeam& team, const MethodN<Dim>& method, const Sweeps<T, Dim>& sweeps,
                      const TermConstants<T, Dim>& constants, const PairView<T, Dim>& fluid,
                      const PairList& list);
 
   /// Takes out what the lower edge of the lifted wall has passed at `time`, s: out of the kernel's
   /// reach, without pressure.
-  void lift(const std::optional<GateMotion>& gate, double time);
+  void lift(const std::optional<GateMotionN<Dim>>& gate, double time);
 
   /// Pa, in the order of `places`, as they were summed last.
-  [[nodiscard]] std::vector<double> pressures(const Method& method) const;
+  [[nodiscard]] std::vector<double> pressures(const MethodN<Dim>& method) const;
   [[nodiscard]] std::size_t bytes() const { return arrays_.bytes() + excess_.bytes(); }
 
  private:

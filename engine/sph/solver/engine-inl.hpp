@@ -18,8 +18,9 @@ namespace sluice {
 inline constexpr double kForceCourant = 0.25;  // of the force limit beside eq. 18
 
 template <typename T, int Dim>
-Engine<T, Dim>::Engine(const Method& method, const FlowDomain& domain, const SolverState& state,
-                       const std::vector<Vec>& walls, const Execution& execution)
+Engine<T, Dim>::Engine(const MethodN<Dim>& method, const FlowDomainN<Dim>& domain,
+                       const SolverStateN<Dim>& state, const std::vector<VecN<Dim>>& walls,
+                       const Execution& execution)
     : method_(method),
       domain_(domain),
       grid_(domain.box, method.spacing, method.smoothing_length,
@@ -38,14 +39,14 @@ Engine<T, Dim>::Engine(const Method& method, const FlowDomain& domain, const Sol
 }
 
 template <typename T, int Dim>
-void Engine<T, Dim>::load(const SolverState& state) {
+void Engine<T, Dim>::load(const SolverStateN<Dim>& state) {
   facts_.step_count = state.step;
   facts_.time = state.time;
   facts_.time_step = state.time_step;
   facts_.removed = state.removed;
   facts_.particle_count = state.particles.size();
 
-  Particles source = state.particles;
+  ParticlesN<Dim> source = state.particles;
   const bool fresh = source.position_sorted.front().empty();
   if (fresh) {
     source.position_sorted = source.position;
@@ -75,7 +76,7 @@ void Engine<T, Dim>::load(const SolverState& state) {
 
 template <typename T, int Dim>
 ParticleSpan<Dim> Engine<T, Dim>::span(std::size_t chunk) {
-  Particles& p = particles_;
+  ParticlesN<Dim>& p = particles_;
   const auto data = [](Values& field) { return field.empty() ? nullptr : field.data(); };
   const auto axes = [&](std::array<Values, Dim>& field) {
     std::array<double*, Dim> pointers;
@@ -136,13 +137,13 @@ void Engine<T, Dim>::step() {
 // For readers.
 
 template <typename T, int Dim>
-SolverState Engine<T, Dim>::state() const {
-  SolverState out;
+SolverStateN<Dim> Engine<T, Dim>::state() const {
+  SolverStateN<Dim> out;
   out.step = facts_.step_count;
   out.time = facts_.time;
   out.time_step = facts_.time_step;
   out.removed = facts_.removed;
-  for (const Field& field : kFields) {
+  for (const FieldN<Dim>& field : FieldList<Dim>::fields) {
     if (!carries(method_.integrator, field)) continue;
     const Values& from = field.values.of(particles_);
     Values& to = field.values.of(out.particles);
@@ -161,7 +162,7 @@ Energy Engine<T, Dim>::energy() {
 }
 
 template <typename T, int Dim>
-FluidProbe<kDim> Engine<T, Dim>::probe() const {
+FluidProbe<Dim> Engine<T, Dim>::probe() const {
   return {method_, domain_, particles_, layout_, bounds_, sweeps_.updates.sum_around};
 }
 
@@ -182,15 +183,17 @@ template <typename T, int Dim>
 std::size_t Engine<T, Dim>::memory_bytes() const {
   std::size_t bytes = pairs_.bytes() + walls_.bytes() + paths_.bytes() + sums_.bytes() +
                       fluid_to_fluid_.bytes() + fluid_to_wall_.bytes() + wall_to_fluid_.bytes();
-  for (const Field& field : kFields)
+  for (const FieldN<Dim>& field : FieldList<Dim>::fields)
     bytes += field.values.of(particles_).capacity() * sizeof(double);
   return bytes + bounds_.bytes();
 }
 
 template <typename T, int Dim>
-std::unique_ptr<Solver::Impl> make_engine(const Method& method, const FlowDomain& domain,
-                                          const SolverState& state, const std::vector<Vec>& walls,
-                                          const Execution& execution) {
+std::unique_ptr<typename SolverN<Dim>::Impl> make_engine(const MethodN<Dim>& method,
+                                                         const FlowDomainN<Dim>& domain,
+                                                         const SolverStateN<Dim>& state,
+                                                         const std::vector<VecN<Dim>>& walls,
+                                                         const Execution& execution) {
   return std::make_unique<Engine<T, Dim>>(method, domain, state, walls, execution);
 }
 

@@ -14,12 +14,13 @@
 namespace sluice {
 
 /// What a solver knows without a look at its particles.
+template <int Dim>
 struct SolverFacts {
   std::uint64_t step_count = 0;
   double time = 0.0;       ///< s
   double time_step = 0.0;  ///< s
   StepLimit step_limit = StepLimit::sound;
-  std::vector<RemovedParticle> removed;
+  std::vector<RemovedParticleN<Dim>> removed;
   Extremes extremes;
   std::size_t particle_count = 0;
   std::size_t wall_count = 0;
@@ -31,26 +32,25 @@ struct SolverFacts {
 };
 
 /// What Solver hides: an engine for one type of pair sums.
-class Solver::Impl {
+template <int Dim>
+class SolverN<Dim>::Impl {
  public:
   virtual ~Impl() = default;
   virtual void step() = 0;
-  [[nodiscard]] virtual const SolverFacts& facts() const = 0;
-  [[nodiscard]] virtual SolverState state() const = 0;
+  [[nodiscard]] virtual const SolverFacts<Dim>& facts() const = 0;
+  [[nodiscard]] virtual SolverStateN<Dim> state() const = 0;
   [[nodiscard]] virtual Energy energy() = 0;
-  [[nodiscard]] virtual FluidProbe<kDim> probe() const = 0;
+  [[nodiscard]] virtual FluidProbe<Dim> probe() const = 0;
   virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
   [[nodiscard]] virtual std::vector<double> wall_pressures() const = 0;
   [[nodiscard]] virtual double pair_slots() const = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
 };
 
-/// Method and state to an engine in `Dim` dimensions whose pair sums run in T.
+/// Method and state to an engine whose pair sums run in T.
 template <typename T, int Dim>
-[[nodiscard]] std::unique_ptr<Solver::Impl> make_engine(const Method& method,
-                                                        const FlowDomain& domain,
-                                                        const SolverState& state,
-                                                        const std::vector<Vec>& walls,
-                                                        const Execution& execution);
+[[nodiscard]] std::unique_ptr<typename SolverN<Dim>::Impl> make_engine(
+    const MethodN<Dim>& method, const FlowDomainN<Dim>& domain, const SolverStateN<Dim>& state,
+    const std::vector<VecN<Dim>>& walls, const Execution& execution);
 
 }  // namespace sluice

@@ -1,7 +1,8 @@
 #pragma once
 
 // The engine of one type of pair sums: for the files that its members are defined in. Its order in
-// memory is engine_order.cpp, its sums are engine_sums.cpp, and each integrator has a file.
+// memory is in engine_order-inl.hpp, its sums are in engine_sums-inl.hpp, and each integrator has a
+// file.
 
 #include <algorithm>
 #include <chrono>
@@ -31,16 +32,16 @@ class PassClock {
 };
 
 template <typename T, int Dim>
-class Engine final : public Solver::Impl {
+class Engine final : public SolverN<Dim>::Impl {
  public:
-  Engine(const Method& method, const FlowDomain& domain, const SolverState& state,
-         const std::vector<Vec>& walls, const Execution& execution);
+  Engine(const MethodN<Dim>& method, const FlowDomainN<Dim>& domain, const SolverStateN<Dim>& state,
+         const std::vector<VecN<Dim>>& walls, const Execution& execution);
 
   void step() override;
-  [[nodiscard]] const SolverFacts& facts() const override { return facts_; }
-  [[nodiscard]] SolverState state() const override;
+  [[nodiscard]] const SolverFacts<Dim>& facts() const override { return facts_; }
+  [[nodiscard]] SolverStateN<Dim> state() const override;
   [[nodiscard]] Energy energy() override;
-  [[nodiscard]] FluidProbe<kDim> probe() const override;
+  [[nodiscard]] FluidProbe<Dim> probe() const override;
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
     team_.run(count, body);
   }
@@ -55,7 +56,7 @@ class Engine final : public Solver::Impl {
   using Sweep = typename Sweeps<T, Dim>::Sweep;
 
   // Start.
-  void load(const SolverState& state);
+  void load(const SolverStateN<Dim>& state);
   void start_kick_drift_kick();
 
   // Order in memory.
@@ -109,15 +110,15 @@ class Engine final : public Solver::Impl {
   template <class Body>
   static void for_blocks(const Span& chunk, const Body& body);
 
-  Method method_;
-  FlowDomain domain_;
-  SolverFacts facts_;
+  MethodN<Dim> method_;
+  FlowDomainN<Dim> domain_;
+  SolverFacts<Dim> facts_;
   Grid<Dim> grid_;
   Sweeps<T, Dim> sweeps_;
   ThreadTeam team_;
   TermConstants<T, Dim> constants_;
 
-  Particles particles_;  // per slot: four to a cluster, empty slots have id kNobody
+  ParticlesN<Dim> particles_;  // per slot: four to a cluster, empty slots have id kNobody
   Layout layout_;
   ClusterBounds<Dim> bounds_;
   PairArrays<T, Dim> pairs_;

@@ -107,7 +107,7 @@ template <typename T, int Dim>
 void Engine<T, Dim>::reorder(Order order) {
   const Layout& next = order.layout;
   std::vector<double> moved;  // each field goes where the one before was
-  for (const Field& field : kFields) {
+  for (const FieldN<Dim>& field : FieldList<Dim>::fields) {
     if (!carries(method_.integrator, field)) continue;
     std::vector<double>& values = field.values.of(particles_);
     const double empty = field.empty == EmptySlot::nobody ? kNobody : 0.0;

@@ -1,17 +1,10 @@
-// The templates of this room for the types of pair sums and the dimensions that runs have.
+// The templates of this room for the dimensions that runs have; each for both types of pair sums.
 
 #include "engine/sph/solver/engine-inl.hpp"
+#include "engine/sph/solver/solver-inl.hpp"
 
 namespace sluice {
 
-template std::unique_ptr<Solver::Impl> make_engine<float, 2>(const Method&, const FlowDomain&,
-                                                             const SolverState&,
-                                                             const std::vector<Vec>&,
-                                                             const Execution&);
-template std::unique_ptr<Solver::Impl> make_engine<double, 2>(const Method&, const FlowDomain&,
-                                                              const SolverState&,
-                                                              const std::vector<Vec>&,
-                                                              const Execution&);
-template class FluidProbe<2>;
+template class SolverN<2>;
 
 }  // namespace sluice

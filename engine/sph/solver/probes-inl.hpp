@@ -86,7 +86,7 @@ Probe FluidProbe<Dim>::pressure(const VecN<Dim>& point, double h) const {
   if (!(sums.kernel > 0.0)) return {};
   const LinearEquationOfState state{method_.sound_speed};
   const double scale =
-      kernel_value_scale(method_.kernel) * method_.particle_mass() / cell_measure<Dim>(h);
+      kernel_value_scale<Dim>(method_.kernel) * method_.particle_mass() / cell_measure<Dim>(h);
   return {state.pressure(sums.excess / sums.kernel), scale * sums.volumes};
 }
 
@@ -123,7 +123,7 @@ Probe FluidProbe<Dim>::surface_height(const VecN<Dim>& place) const {
     for (const VecN<Dim>& p : top) {
       if (p[kUpAxis] > y + support) continue;
       if (p[kUpAxis] < y - support) break;
-      sum += volume * kernel_value(method_.kernel, (p - at).squaredNorm() / (h * h));
+      sum += volume * kernel_value<Dim>(method_.kernel, (p - at).squaredNorm() / (h * h));
     }
     return sum;
   };

@@ -12,8 +12,9 @@ namespace sluice {
 template <int Dim>
 class FluidProbe {
  public:
-  FluidProbe(const Method& method, const FlowDomain& domain, const Particles& particles,
-             const Layout& layout, const ClusterBounds<Dim>& bounds, SumAround<Dim> sum_around)
+  FluidProbe(const MethodN<Dim>& method, const FlowDomainN<Dim>& domain,
+             const ParticlesN<Dim>& particles, const Layout& layout,
+             const ClusterBounds<Dim>& bounds, SumAround<Dim> sum_around)
       : method_(method),
         domain_(domain),
         particles_(particles),
@@ -36,9 +37,9 @@ class FluidProbe {
   template <class Body>
   void for_each_in(const BoxN<Dim>& box, const Body& body) const;
 
-  const Method& method_;
-  const FlowDomain& domain_;
-  const Particles& particles_;
+  const MethodN<Dim>& method_;
+  const FlowDomainN<Dim>& domain_;
+  const ParticlesN<Dim>& particles_;
   const Layout& layout_;
   const ClusterBounds<Dim>& bounds_;
   SumAround<Dim> sum_around_;

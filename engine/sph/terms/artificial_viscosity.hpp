@@ -50,8 +50,8 @@ struct ArtificialViscosity {
   struct Constants {
     T alpha{}, epsilon{}, beta{};
   };
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation&, Neighbours) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>&, Neighbours) const {
     return {static_cast<T>(alpha), static_cast<T>(epsilon), static_cast<T>(beta)};
   }
 };
@@ -78,8 +78,8 @@ struct WallArtificialViscosity {
   struct Constants {
     T alpha{}, epsilon{};
   };
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation&, Neighbours) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>&, Neighbours) const {
     return {static_cast<T>(alpha), static_cast<T>(epsilon)};
   }
 };

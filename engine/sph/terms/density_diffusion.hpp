@@ -53,8 +53,8 @@ struct DensityDiffusion {
   /// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source,
   /// which lifts still water for ever. Only where the hydrostatic part is diffused as well must the
   /// walls hold against it.
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation&, Neighbours j) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>&, Neighbours j) const {
     const bool diffuses = j == Neighbours::fluid || kind == DiffusionKind::molteni_colagrossi;
     return {diffuses ? static_cast<T>(2.0 * delta) : T{0}};
   }
