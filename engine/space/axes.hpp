@@ -15,10 +15,9 @@ template <class T>
 using PerAxis = std::array<T, kDim>;
 
 /// The i-th values of all axes.
-template <class T>
-[[nodiscard]] Eigen::Matrix<T, kDim, 1> vector_of(const PerAxis<std::vector<T>>& values,
-                                                  std::size_t i) {
-  Eigen::Matrix<T, kDim, 1> vector;
+template <class T, std::size_t kAxes>
+[[nodiscard]] auto vector_of(const std::array<std::vector<T>, kAxes>& values, std::size_t i) {
+  Eigen::Matrix<T, static_cast<int>(kAxes), 1> vector;
   for (std::size_t axis = 0; axis < values.size(); ++axis) {
     vector[static_cast<Eigen::Index>(axis)] = values[axis][i];
   }
@@ -26,8 +25,8 @@ template <class T>
 }
 
 /// Adds the components of a vector, each to the values of its axis.
-template <class T, class Vector>
-void append(PerAxis<std::vector<T>>& values, const Vector& vector) {
+template <class T, std::size_t kAxes, class Vector>
+void append(std::array<std::vector<T>, kAxes>& values, const Vector& vector) {
   for (std::size_t axis = 0; axis < values.size(); ++axis) {
     values[axis].push_back(vector[static_cast<Eigen::Index>(axis)]);
   }

@@ -1,4 +1,4 @@
-// The dot product of the pair sums. Included once per SIMD target.
+// Dot products and sums over the components of SIMD vectors. Included once per SIMD target.
 
 #if defined(SLUICE_DOT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SLUICE_DOT_INL
@@ -25,6 +25,23 @@ HWY_INLINE V dot(const std::array<V, Dim>& a, const std::array<V, Dim>& b) {
   for (std::size_t k = Dim - 1; k-- > 0;) {
     sum = hwy::HWY_NAMESPACE::MulAdd(a[k], b[k], sum);
   }
+  return sum;
+}
+
+/// The same without multiply-adds: each operation is rounded by itself, alike in a vector and
+/// alone.
+template <class V, std::size_t Dim>
+HWY_INLINE V plain_dot(const std::array<V, Dim>& a, const std::array<V, Dim>& b) {
+  V sum = a[Dim - 1] * b[Dim - 1];
+  for (std::size_t k = Dim - 1; k-- > 0;) sum = a[k] * b[k] + sum;
+  return sum;
+}
+
+/// |a_x| + |a_y| + ..., from the last axis.
+template <class V, std::size_t Dim>
+HWY_INLINE V sum_of_sizes(const std::array<V, Dim>& a) {
+  V sum = hwy::HWY_NAMESPACE::Abs(a[Dim - 1]);
+  for (std::size_t k = Dim - 1; k-- > 0;) sum = hwy::HWY_NAMESPACE::Abs(a[k]) + sum;
   return sum;
 }
 

@@ -17,8 +17,8 @@ from callgrind import Profile
 
 PARTS = {
     "step": r"sluice::Simulation::step\(\)",
-    "solver": r"sluice::Solver::step\(\)",
-    "measure": r"::measure\(sluice::ParticleSpan const&, sluice::Method const&, ",
+    "solver": r"sluice::SolverN<2>::step\(\)",
+    "measure": r"::measure<2>\(sluice::ParticleSpan<2> const&, sluice::MethodN<2> const&, ",
 }
 ALLOWED = 0.01  # of a step's instructions, for what is the guards' alone
 

@@ -50,7 +50,7 @@ def main():
     for name, expected in EXPECTED.items():
         with open(os.path.join(scenes, name), encoding="utf-8") as stream:
             scene = small(json.load(stream))
-        profile = callgrind.Profile(program, scene, STEPS, within="sluice::Solver::step()")
+        profile = callgrind.Profile(program, scene, STEPS, within="sluice::SolverN<2>::step()")
         if with_profile:
             print_shares(profile)
         seen = profile.total / (PARTICLES * STEPS)

@@ -60,27 +60,31 @@ using WendlandC2 = WendlandC2N<kDim>;
 }
 
 /// value(R^2) of the kernel that a method names.
-[[nodiscard]] inline double kernel_value(KernelKind kind, double r_sq) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value(r_sq)
-                                                : WendlandC2::value(r_sq);
+template <int Dim = kDim>
+[[nodiscard]] double kernel_value(KernelKind kind, double r_sq) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::value(r_sq)
+                                                : WendlandC2N<Dim>::value(r_sq);
 }
 
 /// slope(R^2) of the kernel that a method names.
-[[nodiscard]] inline double kernel_slope(KernelKind kind, double r_sq) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope(r_sq)
-                                                : WendlandC2::slope(r_sq);
+template <int Dim = kDim>
+[[nodiscard]] double kernel_slope(KernelKind kind, double r_sq) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::slope(r_sq)
+                                                : WendlandC2N<Dim>::slope(r_sq);
 }
 
 /// The constant of value(R^2).
-[[nodiscard]] inline double kernel_value_scale(KernelKind kind) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::value_scale
-                                                : WendlandC2::value_scale;
+template <int Dim = kDim>
+[[nodiscard]] double kernel_value_scale(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::value_scale
+                                                : WendlandC2N<Dim>::value_scale;
 }
 
 /// The constant of slope(R^2).
-[[nodiscard]] inline double kernel_slope_scale(KernelKind kind) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::slope_scale
-                                                : WendlandC2::slope_scale;
+template <int Dim = kDim>
+[[nodiscard]] double kernel_slope_scale(KernelKind kind) {
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::slope_scale
+                                                : WendlandC2N<Dim>::slope_scale;
 }
 
 }  // namespace sluice

@@ -18,12 +18,12 @@ HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Which of the clusters from j on, before `end`, reach into [left, right].
-template <class D, class V>
-HWY_INLINE auto clusters_within(D d, const BoxesView& boxes, std::uint32_t j, std::uint32_t end,
-                                V left, V right) {
+/// Which of the clusters from j on, before `end`, reach into [left, right] of their row.
+template <class D, int Dim, class V>
+HWY_INLINE auto clusters_within(D d, const BoxesView<Dim>& boxes, std::uint32_t j,
+                                std::uint32_t end, V left, V right) {
   const auto beside =
-      hn::And(hn::LoadU(d, boxes.x_max + j) >= left, hn::LoadU(d, boxes.x_min + j) <= right);
+      hn::And(hn::LoadU(d, boxes.max[0] + j) >= left, hn::LoadU(d, boxes.min[0] + j) <= right);
   return hn::And(beside, hn::FirstN(d, end - j));
 }
 

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -21,8 +22,21 @@ HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline void measure(const ParticleSpan& p, const Method& method, const FlowDomain& domain,
-                    Motion& out) {
+/// Whether the components are within a box, its faces included.
+template <int Dim, class D, class V>
+HWY_INLINE auto within(D d, const BoxN<Dim>& box, const std::array<V, Dim>& x) {
+  auto inside = hn::And(x[0] >= hn::Set(d, box.min[0]), x[0] <= hn::Set(d, box.max[0]));
+  for (int axis = 1; axis < Dim; ++axis) {
+    const V along = x[static_cast<std::size_t>(axis)];
+    inside = hn::And(
+        inside, hn::And(along >= hn::Set(d, box.min[axis]), along <= hn::Set(d, box.max[axis])));
+  }
+  return inside;
+}
+
+template <int Dim>
+void measure(const ParticleSpan<Dim>& p, const MethodN<Dim>& method, const FlowDomainN<Dim>& domain,
+             Motion& out) {
   using D = hn::ScalableTag<double>;
   const D d;
   using V = hn::Vec<D>;
@@ -36,35 +50,24 @@ inline void measure(const ParticleSpan& p, const Method& method, const FlowDomai
   // As cause_to_remove(). All comparisons are false for a NaN.
   const V sound_sq = hn::Set(d, method.sound_speed * method.sound_speed);
   const V most_excess = hn::Set(d, method.most_density_excess());
-  const Box& box = domain.box;
-  const Box& room = domain.room;
   const V over_from = hn::Set(d, domain.over_from());
   const V rim_left = hn::Set(d, domain.rim_left);
   const V rim_right = hn::Set(d, domain.rim_right);
-  const V room_left = hn::Set(d, room.min.x());
-  const V room_right = hn::Set(d, room.max.x());
-  const V room_floor = hn::Set(d, room.min.y());
-  const V room_ceiling = hn::Set(d, room.max.y());
   const V walls_reach = hn::Set(d, domain.walls_reach);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = at(p.id, s) >= hn::Zero(d);
-    const V vx = at(p.vx, s);
-    const V vy = at(p.vy, s);
-    const V x = at(p.x, s);
-    const V y = at(p.y, s);
+    const auto v = load_axes<Dim>(d, p.velocity, s);
+    const auto x = load_axes<Dim>(d, p.position, s);
     const V rho = at(p.density_excess, s);
-    const V v_sq = vx * vx + vy * vy;
+    const V v_sq = plain_dot(v, v);
     speed_sq = hn::Max(speed_sq, hn::IfThenElseZero(used, v_sq));
     low = hn::Min(low, hn::IfThenElse(used, rho, low));
     high = hn::Max(high, hn::IfThenElse(used, rho, high));
-    front = hn::Max(front, hn::IfThenElse(used, x, front));
-    const auto inside =
-        hn::And(hn::And(x >= hn::Set(d, box.min.x()), x <= hn::Set(d, box.max.x())),
-                hn::And(y >= hn::Set(d, box.min.y()), y <= hn::Set(d, box.max.y())));
-    const auto over = hn::And(y >= over_from, hn::Or(x<rim_left, x> rim_right));
-    const auto outside_room =
-        hn::Or(hn::Or(x<room_left, x> room_right), hn::Or(y<room_floor, y> room_ceiling));
-    const auto in_wall = hn::And(y < walls_reach, outside_room);
+    front = hn::Max(front, hn::IfThenElse(used, x[0], front));
+    const V y = x[kUpAxis];
+    const auto inside = within<Dim>(d, domain.box, x);
+    const auto over = hn::And(y >= over_from, hn::Or(x[0]<rim_left, x[0]> rim_right));
+    const auto in_wall = hn::AndNot(within<Dim>(d, domain.room, x), y < walls_reach);
     const auto kept = hn::AndNot(hn::Or(over, in_wall), inside);
     const auto fit = hn::And(v_sq <= sound_sq, hn::Abs(rho) <= most_excess);
     leaving = hn::Or(leaving, hn::AndNot(hn::And(kept, fit), used));
@@ -78,28 +81,27 @@ inline void measure(const ParticleSpan& p, const Method& method, const FlowDomai
   out.merge(seen);
 }
 
-inline void measure_acceleration(const ParticleSpan& p, Motion& out) {
+template <int Dim>
+void measure_acceleration(const ParticleSpan<Dim>& p, Motion& out) {
   using D = hn::ScalableTag<double>;
   const D d;
   hn::Vec<D> largest = hn::Zero(d);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
-    const auto ax = hn::LoadU(d, p.ax + s);
-    const auto ay = hn::LoadU(d, p.ay + s);
-    largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
+    const auto a = load_axes<Dim>(d, p.acceleration, s);
+    largest = hn::Max(largest, hn::IfThenElseZero(used, plain_dot(a, a)));
   }
   out.acceleration_sq = std::max(out.acceleration_sq, hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
-template <typename T>
-void measure_rates(const ParticleSpan& p, const Rates<T>& r, Motion& out) {
+template <typename T, int Dim>
+void measure_rates(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, Motion& out) {
   const State d;
   StateVec largest = hn::Zero(d);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
-    const auto ax = load_rate(r, r.blocks.x, r.acceleration_scale, r.gravity.x(), s);
-    const auto ay = load_rate(r, r.blocks.y, r.acceleration_scale, r.gravity.y(), s);
-    largest = hn::Max(largest, hn::IfThenElseZero(used, ax * ax + ay * ay));
+    const auto a = array_of<Dim>([&](auto axis) HWY_ATTR { return load_acceleration(r, axis, s); });
+    largest = hn::Max(largest, hn::IfThenElseZero(used, plain_dot(a, a)));
   }
   out.acceleration_sq = std::max(out.acceleration_sq, hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
@@ -127,22 +129,24 @@ HWY_INLINE StateVec compression(StateVec s) {
   return hn::LoadU(d, exact);
 }
 
-inline void sum_energy(const ParticleSpan& p, const Method& method, Energy& out) {
+template <int Dim>
+void sum_energy(const ParticleSpan<Dim>& p, const MethodN<Dim>& method, Energy& out) {
   const State d;
   StateVec speeds_sq = hn::Zero(d);
   StateVec lifts = hn::Zero(d);
   StateVec compressions = hn::Zero(d);
-  const StateVec fx = hn::Set(d, method.gravity.x());
-  const StateVec fy = hn::Set(d, method.gravity.y());
+  const auto f = array_of<Dim>([&](auto axis) HWY_ATTR {
+    return hn::Set(d, method.gravity[static_cast<Eigen::Index>(axis)]);
+  });
   const StateVec rho_0 = hn::Set(d, method.reference_density);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = hn::LoadU(d, p.id + s) >= hn::Zero(d);
     const auto at = [&](const double* field)
                         HWY_ATTR { return hn::IfThenElseZero(used, hn::LoadU(d, field + s)); };
-    const StateVec vx = at(p.vx);
-    const StateVec vy = at(p.vy);
-    speeds_sq = speeds_sq + (vx * vx + vy * vy);
-    lifts = lifts - (fx * at(p.x) + fy * at(p.y));
+    const auto v = array_of<Dim>([&](auto axis) HWY_ATTR { return at(p.velocity[axis]); });
+    const auto x = array_of<Dim>([&](auto axis) HWY_ATTR { return at(p.position[axis]); });
+    speeds_sq = speeds_sq + plain_dot(v, v);
+    lifts = lifts - plain_dot(f, x);
     compressions = compressions + compression(at(p.density_excess) / rho_0);
   }
   const double mass = method.particle_mass();

@@ -49,12 +49,14 @@ HWY_INLINE void write_relative(D d, std::size_t begin, std::size_t end, T* HWY_R
   }
 }
 
-template <typename T>
-void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+template <typename T, int Dim>
+void write_places(const ParticleSpan<Dim>& p, const PairScales<Dim>& k, PairArrays<T, Dim>& out) {
   const auto write = [&](auto d, std::size_t begin, std::size_t end) HWY_ATTR {
-    const Vec origin = k.grid->origin_cell_center(k.origin_cell[begin / kCluster]);
-    write_relative(d, begin, end, out.x.data(), p.x, origin.x(), k.inverse_length);
-    write_relative(d, begin, end, out.y.data(), p.y, origin.y(), k.inverse_length);
+    const VecN<Dim> origin = k.grid->origin_cell_center(k.origin_cell[begin / kCluster]);
+    unroll<Dim>([&](auto axis) HWY_ATTR {
+      write_relative(d, begin, end, out.position[axis].data(), p.position[axis],
+                     origin[static_cast<Eigen::Index>(axis)], k.inverse_length);
+    });
   };
   if (k.grid->has_one_origin_cell()) {
     write(hn::ScalableTag<double>(), p.begin, p.end);
@@ -64,23 +66,27 @@ void write_places(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out
   if (out.diffused.size() == 0) return;
   T* HWY_RESTRICT diffused = out.diffused.data();
   for (std::size_t i = p.begin; i < p.end; ++i) {
-    diffused[i] = static_cast<T>(
-        p.density_excess[i] * k.inverse_density -
-        (k.hydrostatic.x() * p.x[i] + k.hydrostatic.y() * p.y[i] - k.hydrostatic_middle));
+    double hydrostatic = k.hydrostatic[0] * p.position[0][i];
+    for (int axis = 1; axis < Dim; ++axis) {
+      hydrostatic += k.hydrostatic[axis] * p.position[static_cast<std::size_t>(axis)][i];
+    }
+    diffused[i] = static_cast<T>(p.density_excess[i] * k.inverse_density -
+                                 (hydrostatic - k.hydrostatic_middle));
   }
 }
 
-template <typename T>
-void write_velocities(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+template <typename T, int Dim>
+void write_velocities(const ParticleSpan<Dim>& p, const PairScales<Dim>& k,
+                      PairArrays<T, Dim>& out) {
   const auto scaled = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT v) HWY_ATTR {
     for (std::size_t s = p.begin; s < p.end; ++s) to[s] = static_cast<T>(v[s] * k.inverse_speed);
   };
-  scaled(out.u.data(), p.vx);
-  scaled(out.v.data(), p.vy);
+  unroll<Dim>([&](auto axis) HWY_ATTR { scaled(out.velocity[axis].data(), p.velocity[axis]); });
 }
 
-template <typename T>
-void write_densities(const ParticleSpan& p, const PairScales& k, PairArrays<T>& out) {
+template <typename T, int Dim>
+void write_densities(const ParticleSpan<Dim>& p, const PairScales<Dim>& k,
+                     PairArrays<T, Dim>& out) {
   T* HWY_RESTRICT excess = out.excess.data();
   T* HWY_RESTRICT volume = out.volume.data();
   T* HWY_RESTRICT pressure_term = out.pressure_term.data();
@@ -93,24 +99,24 @@ void write_densities(const ParticleSpan& p, const PairScales& k, PairArrays<T>& 
   }
 }
 
-template <typename T>
-void compare_with_paths(const ParticleSpan& p, const PairArrays<T>& now,
-                        const ListPathsView<T>& paths, const Skin<T>& skin, T elapsed,
+template <typename T, int Dim>
+void compare_with_paths(const ParticleSpan<Dim>& p, const PairArrays<T, Dim>& now,
+                        const ListPathsView<T, Dim>& paths, const Skin<T>& skin, T elapsed,
                         Motion& out) {
   using D = hn::ScalableTag<T>;
   const D d;
   const auto t = hn::Set(d, elapsed);
   auto expired = hn::FirstN(d, 0);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
-    const auto x = hn::LoadU(d, paths.x + s);
-    const auto u = hn::LoadU(d, paths.u + s);
-    const auto v = hn::LoadU(d, paths.v + s);
-    const auto dx = hn::NegMulAdd(u, t, hn::LoadU(d, now.x.data() + s) - x);
-    const auto dy = hn::NegMulAdd(v, t, hn::LoadU(d, now.y.data() + s) - hn::LoadU(d, paths.y + s));
+    const auto x = load_axes<Dim>(d, paths.position, s);
+    const auto v = load_axes<Dim>(d, paths.velocity, s);
+    const auto off = array_of<Dim>([&](auto axis) HWY_ATTR {
+      return hn::NegMulAdd(v[axis], t, hn::LoadU(d, now.position[axis].data() + s) - x[axis]);
+    });
     const auto limit =
-        hn::MulAdd(hn::Set(d, skin.per_speed), hn::Abs(u) + hn::Abs(v), hn::Set(d, skin.least));
-    const auto used = hn::Abs(x) < hn::Set(d, static_cast<T>(kNowhere));
-    expired = hn::Or(expired, hn::And(used, hn::MulAdd(dx, dx, dy * dy) > limit * limit));
+        hn::MulAdd(hn::Set(d, skin.per_speed), sum_of_sizes(v), hn::Set(d, skin.least));
+    const auto used = hn::Abs(x[0]) < hn::Set(d, static_cast<T>(kNowhere));
+    expired = hn::Or(expired, hn::And(used, dot(off, off) > limit * limit));
   }
   out.expired |= !hn::AllFalse(d, expired);
 }

@@ -15,9 +15,12 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/space/dot-inl.hpp"
+#include "engine/space/unroll-inl.hpp"
 #include "engine/sph/loops/sweeps.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -93,74 +96,42 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V v) {
   hn::StoreU(hn::LoadU(block, to) - sum, block, to);
 }
 
-/// The same for two blocks side by side.
-template <typename T, class V>
-HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V first, V second) {
-  if constexpr (Blocks<T>::lanes == 4 * kCluster) {
+/// The same for all blocks of a place of `kStride` values, in the order of memory.
+template <std::size_t kStride, typename T, class V, std::size_t kCount>
+HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, const std::array<V, kCount>& blocks) {
+  const typename Blocks<T>::D d;
+  constexpr bool wide = Blocks<T>::lanes == 4 * kCluster;
+  if constexpr (wide && kCount >= 3 && kStride == Blocks<T>::lanes) {
+    // All blocks are one vector; a fourth that nobody sums is not read. Each half holds in two of
+    // its blocks what is to be added up for the blocks 0 and 2, and for 1 and 3.
+    const V even = hn::ConcatLowerLower(d, blocks[2], blocks[0]) +
+                   hn::ConcatUpperUpper(d, blocks[2], blocks[0]);
+    V odd = blocks[1];
+    if constexpr (kCount == 3) {
+      odd = odd + hn::ConcatLowerUpper(d, odd, odd);
+    } else {
+      odd = hn::ConcatLowerLower(d, blocks[3], odd) + hn::ConcatUpperUpper(d, blocks[3], odd);
+    }
+    const V sums =
+        hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
+    hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+  } else if constexpr (wide && kCount == 2) {
     const hn::Half<typename Blocks<T>::D> half;
-    const auto a = hn::LowerHalf(half, first) + hn::UpperHalf(half, first);
-    const auto b = hn::LowerHalf(half, second) + hn::UpperHalf(half, second);
+    const auto a = hn::LowerHalf(half, blocks[0]) + hn::UpperHalf(half, blocks[0]);
+    const auto b = hn::LowerHalf(half, blocks[1]) + hn::UpperHalf(half, blocks[1]);
     const auto sums = hn::ConcatLowerLower(half, b, a) + hn::ConcatUpperUpper(half, b, a);
     hn::StoreU(hn::LoadU(half, to) - sums, half, to);
   } else {
-    subtract_from_j(to, first);
-    subtract_from_j(to + kCluster, second);
+    unroll<kCount>([&](auto block)
+                       HWY_ATTR { subtract_from_j(to + kCluster * block, blocks[block]); });
   }
 }
 
-/// For places of which all blocks are one vector: `even` and `odd` hold, in two blocks each, what
-/// is to be added up for the blocks 0 and 2, and for 1 and 3.
-template <typename T, class V>
-HWY_INLINE void subtract_halves(T* HWY_RESTRICT to, V even, V odd) {
-  const typename Blocks<T>::D d;
-  const V sums =
-      hn::OddEvenBlocks(odd, even) + hn::SwapAdjacentBlocks(hn::OddEvenBlocks(even, odd));
-  hn::StoreU(hn::LoadU(d, to) - sums, d, to);
+/// The same particles i of several arrays, one for each axis.
+template <int Dim, typename T>
+HWY_INLINE auto load_i(const std::array<const T*, Dim>& from, std::size_t slot) {
+  return array_of<Dim>([&](auto axis) HWY_ATTR { return load_i(from[axis] + slot); });
 }
-
-template <typename T, class V>
-HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x) {
-  const typename Blocks<T>::D d;
-  if constexpr (Blocks<T>::lanes == kRateSums.stride) {
-    // The last block is not read.
-    const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
-    subtract_halves(to, even, V(y + hn::ConcatLowerUpper(d, y, y)));
-  } else {
-    subtract_from_j(to + kRateSums.density, density);
-    subtract_from_j(to + kRateSums.y, y);
-    subtract_from_j(to + kRateSums.x, x);
-  }
-}
-
-template <typename T, class V>
-HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, V density, V y, V x, V trace) {
-  const typename Blocks<T>::D d;
-  constexpr SumBlocks blocks = kDensityAndShiftingSums;
-  if constexpr (Blocks<T>::lanes == blocks.stride) {
-    const V even = hn::ConcatLowerLower(d, x, density) + hn::ConcatUpperUpper(d, x, density);
-    const V odd = hn::ConcatLowerLower(d, trace, y) + hn::ConcatUpperUpper(d, trace, y);
-    subtract_halves(to, even, odd);
-  } else {
-    subtract_from_j(to + blocks.density, density);
-    subtract_from_j(to + blocks.y, y);
-    subtract_from_j(to + blocks.x, x);
-    subtract_from_j(to + blocks.trace, trace);
-  }
-}
-
-/// Positions of the particles i as seen from the origin cell of a cluster j.
-template <typename T>
-struct OriginShift {
-  T x[9];
-  T y[9];
-  explicit OriginShift(T origin_cell_size) {
-    for (int code = 0; code < 9; ++code) {
-      const int row = code / 3;
-      x[code] = -static_cast<T>(code % 3 - 1) * origin_cell_size;
-      y[code] = -static_cast<T>(row - 1) * origin_cell_size;
-    }
-  }
-};
 
 /// Place in the sums of the particles j of an entry, or of its vector `part`.
 template <typename T>
@@ -169,28 +140,31 @@ HWY_INLINE T* place_of(T* sums, std::size_t stride, const PairList::Chunk& list,
   return sums + stride * list.targets[entry] + part * Blocks<T>::j_lanes;
 }
 
-/// Calls body(slot of j, x_ij/h, y_ij/h, entry, part) for every vector of pairs of cluster c, the
-/// c-th of the list's chunk.
-template <typename T, class V, class Body>
-HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, const PairView<T>& other,
-                              const OriginShift<T>& shift, V x_i, V y_i, const Body& body) {
+/// Calls body(slot of j, x_ij/h, entry, part) for every vector of pairs of cluster c, the c-th of
+/// the list's chunk.
+template <int Dim, typename T, class V, class Body>
+HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c,
+                              const PairView<T, Dim>& other, const OriginShift<T, Dim>& shift,
+                              const std::array<V, Dim>& x_i, const Body& body) {
   using B = Blocks<T>;
+  using Entry = ListEntry<Dim>;
   const typename B::D d;
   const std::uint32_t* HWY_RESTRICT entries = list.entries.data();
-  std::uint32_t seen_from = kSameOriginCell;
-  V x_seen = x_i;
-  V y_seen = y_i;
+  std::uint32_t seen_from = Entry::kSameOriginCell;
+  std::array<V, Dim> x_seen = x_i;
   for (std::size_t n = list.begin[c]; n != list.begin[c + 1]; ++n) {
-    const std::size_t slot = kCluster * (entries[n] & PairList::kClusterMask);
-    const std::uint32_t code = entries[n] >> PairList::kShiftBit;
+    const std::size_t slot = kCluster * Entry::cluster(entries[n]);
+    const std::uint32_t code = Entry::code(entries[n]);
     if (HWY_UNLIKELY(code != seen_from)) {
       seen_from = code;
-      x_seen = x_i + hn::Set(d, shift.x[code]);
-      y_seen = y_i + hn::Set(d, shift.y[code]);
+      unroll<Dim>([&](auto axis)
+                      HWY_ATTR { x_seen[axis] = x_i[axis] + hn::Set(d, shift.of[axis][code]); });
     }
     for (std::size_t part = 0; part < B::j_vectors; ++part) {
       const std::size_t j = slot + part * B::j_lanes;
-      body(j, x_seen - load_j(other.x + j), y_seen - load_j(other.y + j), n, part);
+      const auto x_ij = array_of<Dim>(
+          [&](auto axis) HWY_ATTR { return x_seen[axis] - load_j(other.position[axis] + j); });
+      body(j, x_ij, n, part);
     }
   }
 }

@@ -29,20 +29,20 @@ struct Form {
 
 /// Which rates a loop sums, and of which terms.
 enum class Sums { density, acceleration, both };
-template <Sums kSums, bool kShifting, class... Forms>
+template <int Dim, Sums kSums, bool kShifting, class... Forms>
 struct RateSums {
   static_assert(!kShifting || kSums == Sums::density);
   static constexpr bool density = kSums != Sums::acceleration;
   static constexpr bool acceleration = kSums != Sums::density;
   static constexpr bool shifting = kShifting;
-  static constexpr SumBlocks blocks = shifting        ? kDensityAndShiftingSums
-                                      : !acceleration ? kDensitySums
-                                      : !density      ? kAccelerationSums
-                                                      : kRateSums;
+  static constexpr SumBlocks<Dim> blocks = shifting        ? kDensityAndShiftingSums<Dim>
+                                           : !acceleration ? kDensitySums<Dim>
+                                           : !density      ? kAccelerationSums<Dim>
+                                                           : kRateSums<Dim>;
   template <RateOf kRate>
   static constexpr bool sums = kRate == RateOf::density ? density : acceleration;
   template <class Term, int kForm>
-  using With = RateSums<kSums, kShifting, Forms..., Form<Term, kForm>>;
+  using With = RateSums<Dim, kSums, kShifting, Forms..., Form<Term, kForm>>;
 
   /// The terms against one kind of neighbours. They add one after the other, in their order.
   template <Neighbours kJ, typename T>
@@ -58,7 +58,7 @@ struct RateSums {
     RateConstants<T> constants;
 
     template <class V, class J>
-    HWY_INLINE V add_exchange(V sum, [[maybe_unused]] const PairI<V>& i,
+    HWY_INLINE V add_exchange(V sum, [[maybe_unused]] const PairI<V, Dim>& i,
                               [[maybe_unused]] const J& j) const {
       ((sum = SummandOf<Forms>::add_exchange(D(), std::get<ConstantsOf<Forms>>(constants), sum, i,
                                              j)),
@@ -66,15 +66,16 @@ struct RateSums {
       return sum;
     }
     template <class V, class J>
-    HWY_INLINE V add_along(V sum, [[maybe_unused]] const PairGeometry<V>& pair,
-                           [[maybe_unused]] const PairI<V>& i, [[maybe_unused]] const J& j) const {
+    HWY_INLINE V add_along(V sum, [[maybe_unused]] const PairGeometry<V, Dim>& pair,
+                           [[maybe_unused]] const PairI<V, Dim>& i,
+                           [[maybe_unused]] const J& j) const {
       ((sum = SummandOf<Forms>::add_along(D(), std::get<ConstantsOf<Forms>>(constants), sum, pair,
                                           i, j)),
        ...);
       return sum;
     }
     template <class V>
-    HWY_INLINE V add_component(V sum, [[maybe_unused]] V g, [[maybe_unused]] const PairI<V>& i,
+    HWY_INLINE V add_component(V sum, [[maybe_unused]] V g, [[maybe_unused]] const PairI<V, Dim>& i,
                                [[maybe_unused]] V velocity_i, [[maybe_unused]] V velocity_j) const {
       ((sum = SummandOf<Forms>::add_component(D(), std::get<ConstantsOf<Forms>>(constants), sum, g,
                                               i, velocity_i, velocity_j)),
@@ -85,13 +86,12 @@ struct RateSums {
 };
 
 /// The particles j of a vector, as terms see them: what no term asks for is not read.
-template <typename T>
+template <typename T, int Dim>
 struct PairJ {
-  const PairView<T>& from;
+  const PairView<T, Dim>& from;
   std::size_t slot;
 
-  HWY_INLINE auto u() const { return load_j(from.u + slot); }
-  HWY_INLINE auto v() const { return load_j(from.v + slot); }
+  HWY_INLINE auto velocity(std::size_t axis) const { return load_j(from.velocity[axis] + slot); }
   HWY_INLINE auto excess() const { return load_j(from.excess + slot); }
   HWY_INLINE auto volume() const { return load_j(from.volume + slot); }
   HWY_INLINE auto diffused() const { return load_j(from.diffused + slot); }

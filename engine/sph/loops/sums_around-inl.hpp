@@ -23,7 +23,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// The first cluster of a row that reaches `left`, or its end. Clusters lie about evenly along a
 /// row, so that it is mostly in the vector that is tried first.
-inline std::uint32_t first_near(const BoxesView& boxes, const Surroundings::Row& row) {
+template <int Dim>
+std::uint32_t first_near(const BoxesView<Dim>& boxes, const RowPart& row) {
   const hn::CappedTag<float, kTail> d;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   const float* const reach = boxes.x_max_before;
@@ -47,14 +48,14 @@ inline std::uint32_t first_near(const BoxesView& boxes, const Surroundings::Row&
 constexpr std::size_t kListed = 64;
 
 /// Calls body(clusters) for those near the point, in memory order.
-template <class Body>
-HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body) {
+template <int Dim, class Body>
+HWY_INLINE void for_clusters_around(const Surroundings<Dim>& around, const Body& body) {
   const hn::CappedTag<float, kTail> d;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  const BoxesView& boxes = around.boxes;
+  const BoxesView<Dim>& boxes = around.boxes;
   std::uint32_t listed[kListed + kTail];
   std::size_t count = 0;
-  for (const Surroundings::Row& row : around.rows) {
+  for (const RowPart& row : around.rows) {
     const auto left = hn::Set(d, row.left);
     const auto right = hn::Set(d, row.right);
     for (std::uint32_t j = first_near(boxes, row); j < row.end; j += lanes) {
@@ -69,21 +70,23 @@ HWY_INLINE void for_clusters_around(const Surroundings& around, const Body& body
   body(std::span<const std::uint32_t>(listed, count));
 }
 
-template <class Shape>
-PointSums sum_around(const Particles& p, const Surroundings& around) {
+template <class Shape, int Dim>
+PointSums sum_around(const ParticlesN<Dim>& p, const Surroundings<Dim>& around) {
   const State d;
   const StateVec inverse_h = hn::Set(d, 1.0 / around.smoothing_length);
-  const StateVec x = hn::Set(d, around.point.x());
-  const StateVec y = hn::Set(d, around.point.y());
+  const auto point = array_of<Dim>([&](auto axis) HWY_ATTR {
+    return hn::Set(d, around.point[static_cast<Eigen::Index>(axis)]);
+  });
   const StateVec rho_0 = hn::Set(d, around.reference_density);
   StateVec kernel = hn::Zero(d);
   StateVec excess = hn::Zero(d);
   StateVec volumes = hn::Zero(d);
   const auto add = [&](std::size_t s) HWY_ATTR {
     const auto used = hn::LoadU(d, p.id.data() + s) >= hn::Zero(d);
-    const StateVec dx = (hn::LoadU(d, p.position[0].data() + s) - x) * inverse_h;
-    const StateVec dy = (hn::LoadU(d, p.position[1].data() + s) - y) * inverse_h;
-    const StateVec w = hn::IfThenElseZero(used, Shape::value(d, dx * dx + dy * dy));
+    const auto off = array_of<Dim>([&](auto axis) HWY_ATTR {
+      return (hn::LoadU(d, p.position[axis].data() + s) - point[axis]) * inverse_h;
+    });
+    const StateVec w = hn::IfThenElseZero(used, Shape::value(d, plain_dot(off, off)));
     const StateVec e = hn::IfThenElseZero(used, hn::LoadU(d, p.density_excess.data() + s));
     kernel = kernel + w;
     excess = excess + w * e;

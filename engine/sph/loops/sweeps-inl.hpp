@@ -22,25 +22,25 @@ HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class Shape, typename T>
-void fill_sweeps(const Method& method, Sweeps<T>& out) {
+template <class Shape, typename T, int Dim>
+void fill_sweeps(const MethodN<Dim>& method, Sweeps<T, Dim>& out) {
   if (method.integrator == Integrator::modified_leap_frog) {
-    out.density_and_acceleration = select_rates<Shape, Sums::both, T>(method);
+    out.density_and_acceleration = select_rates<Shape, Sums::both, T, Dim>(method);
   } else {
-    out.density = select_rates<Shape, Sums::density, T>(method);
-    out.density_and_shift = select_rates<Shape, Sums::density, T, true>(method);
-    out.acceleration = select_rates<Shape, Sums::acceleration, T>(method);
+    out.density = select_rates<Shape, Sums::density, T, Dim>(method);
+    out.density_and_shift = select_rates<Shape, Sums::density, T, Dim, true>(method);
+    out.acceleration = select_rates<Shape, Sums::acceleration, T, Dim>(method);
   }
-  out.wall_pressure = &sum_wall_pressure<Shape, T>;
-  out.reinitialise = &sum_reinitialisation<Shape, T>;
-  out.updates.sum_around = &sum_around<Shape>;
-  out.search = &search_boxes;
-  out.prune = &prune_list<T>;
+  out.wall_pressure = &sum_wall_pressure<Shape, T, Dim>;
+  out.reinitialise = &sum_reinitialisation<Shape, T, Dim>;
+  out.updates.sum_around = &sum_around<Shape, Dim>;
+  out.search = &search_boxes<Dim>;
+  out.prune = &prune_list<T, Dim>;
   out.target = hwy::TargetName(HWY_TARGET);
 }
 
-template <typename T>
-void fill(const Method& method, Sweeps<T>& out) {
+template <typename T, int Dim>
+void fill(const MethodN<Dim>& method, Sweeps<T, Dim>& out) {
   fill_updates(out.updates);
   if (method.kernel == KernelKind::truncated_gaussian) {
     fill_sweeps<GaussianShape>(method, out);

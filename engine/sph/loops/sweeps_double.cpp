@@ -7,7 +7,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 
-void fill_double(const Method& method, Sweeps<double>& out) { fill(method, out); }
+void fill_double(const Method& method, Sweeps<double, 2>& out) { fill(method, out); }
 
 }  // namespace sluice::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -20,8 +20,8 @@ namespace sluice {
 HWY_EXPORT(fill_double);
 
 template <>
-Sweeps<double> select_sweeps<double>(const Method& method, const std::string& target) {
-  Sweeps<double> sweeps;
+Sweeps<double, 2> select_sweeps<double, 2>(const Method& method, const std::string& target) {
+  Sweeps<double, 2> sweeps;
   with_simd_target(target, [&] { HWY_DYNAMIC_DISPATCH(fill_double)(method, sweeps); });
   return sweeps;
 }

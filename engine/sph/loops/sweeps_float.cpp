@@ -7,7 +7,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 
-void fill_float(const Method& method, Sweeps<float>& out) { fill(method, out); }
+void fill_float(const Method& method, Sweeps<float, 2>& out) { fill(method, out); }
 
 }  // namespace sluice::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -20,8 +20,8 @@ namespace sluice {
 HWY_EXPORT(fill_float);
 
 template <>
-Sweeps<float> select_sweeps<float>(const Method& method, const std::string& target) {
-  Sweeps<float> sweeps;
+Sweeps<float, 2> select_sweeps<float, 2>(const Method& method, const std::string& target) {
+  Sweeps<float, 2> sweeps;
   with_simd_target(target, [&] { HWY_DYNAMIC_DISPATCH(fill_float)(method, sweeps); });
   return sweeps;
 }

@@ -21,23 +21,23 @@ HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <typename T>
-void fill_updates(Updates<T>& out) {
-  out.leap_frog = &leap_frog<T>;
-  out.kick_drift = &kick_drift;
-  out.density_drift = &density_drift<T>;
-  out.shift = &shift<T>;
-  out.kick = &kick<T>;
-  out.write_places = &write_places<T>;
-  out.write_velocities = &write_velocities<T>;
-  out.write_densities = &write_densities<T>;
-  out.compare = &compare_with_paths<T>;
+template <typename T, int Dim>
+void fill_updates(Updates<T, Dim>& out) {
+  out.leap_frog = &leap_frog<T, Dim>;
+  out.kick_drift = &kick_drift<Dim>;
+  out.density_drift = &density_drift<T, Dim>;
+  out.shift = &shift<T, Dim>;
+  out.kick = &kick<T, Dim>;
+  out.write_places = &write_places<T, Dim>;
+  out.write_velocities = &write_velocities<T, Dim>;
+  out.write_densities = &write_densities<T, Dim>;
+  out.compare = &compare_with_paths<T, Dim>;
   out.gather = &gather<T>;
-  out.reinitialise = &reinitialise_density<T>;
-  out.measure = &measure;
-  out.measure_acceleration = &measure_acceleration;
-  out.measure_rates = &measure_rates<T>;
-  out.sum_energy = &sum_energy;
+  out.reinitialise = &reinitialise_density<T, Dim>;
+  out.measure = &measure<Dim>;
+  out.measure_acceleration = &measure_acceleration<Dim>;
+  out.measure_rates = &measure_rates<T, Dim>;
+  out.sum_energy = &sum_energy<Dim>;
 }
 
 }  // namespace sluice::HWY_NAMESPACE

@@ -5,26 +5,29 @@
 #include <limits>
 #include <optional>
 
+#include "engine/space/space_traits.hpp"
 #include "engine/space/vec.hpp"
 
 namespace sluice {
 
 /// A wall that is lifted out of the tank from t = 0 on: the dummy particles in `place` stand still,
 /// and go row by row as the lower edge passes them. Nothing of it is state: it follows from t.
-struct GateMotion {
-  Box place;           ///< m
+template <int Dim>
+struct GateMotionN {
+  BoxN<Dim> place;     ///< m
   double speed = 0.0;  ///< upwards, m/s
 
   /// Whether a dummy particle there is gone at time t.
-  [[nodiscard]] bool has_passed(const Vec& p, double t) const {
-    return place.contains(p) && p.y() < place.min.y() + speed * t;
+  [[nodiscard]] bool has_passed(const VecN<Dim>& p, double t) const {
+    return place.contains(p) && p[kUpAxis] < place.min[kUpAxis] + speed * t;
   }
 };
 
 /// Where the fluid of a run may be: what lies outside is removed. Empty parts bound nothing but the
 /// box.
-struct FlowDomain {
-  Box box;                         ///< a particle that leaves it is removed
+template <int Dim>
+struct FlowDomainN {
+  BoxN<Dim> box;                   ///< a particle that leaves it is removed
   std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
                                    ///< no open tank
   /// m; outside of these x a particle is over the wall from over_from() on and removed at once, so
@@ -34,13 +37,13 @@ struct FlowDomain {
 
   /// m; what is outside of the room and below this height is deep in a wall of the tank. Of an open
   /// tank that is a little below wall_top: what comes over a rim may lie down on it.
-  Box room{Vec::Constant(-std::numeric_limits<double>::infinity()),
-           Vec::Constant(std::numeric_limits<double>::infinity())};
+  BoxN<Dim> room{VecN<Dim>::Constant(-std::numeric_limits<double>::infinity()),
+                 VecN<Dim>::Constant(std::numeric_limits<double>::infinity())};
   double walls_reach = std::numeric_limits<double>::infinity();
-  std::optional<GateMotion> gate;
+  std::optional<GateMotionN<Dim>> gate;
   /// Whether a place is in an obstacle or in the gate at time t; empty: there is none. Asked once
   /// in a while for each particle, on any thread.
-  std::function<bool(const Vec&, double t)> in_solid;
+  std::function<bool(const VecN<Dim>&, double t)> in_solid;
 
   /// Height from which on a particle beyond a rim's middle is over it, m: little below wall_top,
   /// for what runs over a rim sinks into its outer edge.
@@ -48,11 +51,14 @@ struct FlowDomain {
     return wall_top ? std::min(*wall_top, walls_reach) : std::numeric_limits<double>::infinity();
   }
   /// Whether a particle there stays in the run.
-  [[nodiscard]] bool keeps(const Vec& p) const {
-    const bool over = p.y() >= over_from() && !(p.x() >= rim_left && p.x() <= rim_right);
-    const bool in_wall = p.y() < walls_reach && !room.contains(p);
+  [[nodiscard]] bool keeps(const VecN<Dim>& p) const {
+    const bool over = p[kUpAxis] >= over_from() && !(p.x() >= rim_left && p.x() <= rim_right);
+    const bool in_wall = p[kUpAxis] < walls_reach && !room.contains(p);
     return box.contains(p) && !over && !in_wall;
   }
 };
+
+using GateMotion = GateMotionN<kDim>;
+using FlowDomain = FlowDomainN<kDim>;
 
 }  // namespace sluice

@@ -21,7 +21,8 @@ enum class Precision { mixed, double_precision };
 /// particles.
 /// Each term of terms/list.hpp is an optional member. An empty one is left out: its sum is not
 /// computed, its fields are not allocated.
-struct Method : Discretisation, OptionalTerms<AllTerms> {
+template <int Dim>
+struct MethodN : DiscretisationN<Dim>, OptionalTerms<AllTerms> {
   Integrator integrator = Integrator::modified_leap_frog;
   Precision precision = Precision::mixed;
   double courant = 0.25;  ///< C of eq. 18
@@ -29,14 +30,18 @@ struct Method : Discretisation, OptionalTerms<AllTerms> {
 
   /// A particle is excluded whose density is farther than this from rho_0, over rho_0.
   static constexpr double kDensityLeeway = 0.3;
-  [[nodiscard]] double most_density_excess() const { return kDensityLeeway * reference_density; }
+  [[nodiscard]] double most_density_excess() const {
+    return kDensityLeeway * this->reference_density;
+  }
 
   /// No step is shorter, s: 0.05 h/c, in proportion less for a Courant number below the paper's
   /// 0.25. Only an acceleration of more than 25 c^2/h asks for less, and a particle that has it is
   /// faster than sound after such a step, and excluded: it does not hold up all others.
   [[nodiscard]] double least_time_step() const {
-    return 0.05 * std::min(1.0, courant / 0.25) * smoothing_length / sound_speed;
+    return 0.05 * std::min(1.0, courant / 0.25) * this->smoothing_length / this->sound_speed;
   }
 };
+
+using Method = MethodN<kDim>;
 
 }  // namespace sluice

@@ -19,20 +19,24 @@ using Values = std::vector<double>;
 
 /// Fluid particles, structure of arrays. The order of the particles is part of the state: sums run
 /// in it. A field that the scheme does not need stays empty; all others have `size()` entries.
-struct Particles {
-  PerAxis<Values> position;         ///< m
-  PerAxis<Values> velocity;         ///< m/s
-  Values density_excess;            ///< rho - rho_0, kg/m^3
-  PerAxis<Values> velocity_half;    ///< velocity half a step earlier, m/s
-  Values density_excess_half;       ///< rho - rho_0 half a step earlier, kg/m^3
-  PerAxis<Values> acceleration;     ///< m/s^2
-  PerAxis<Values> position_sorted;  ///< position at the last sort, m
-  Values id;                        ///< number given at the start; whole, 0 ... N-1
+template <int Dim>
+struct ParticlesN {
+  using Axes = std::array<Values, Dim>;
+
+  Axes position;               ///< m
+  Axes velocity;               ///< m/s
+  Values density_excess;       ///< rho - rho_0, kg/m^3
+  Axes velocity_half;          ///< velocity half a step earlier, m/s
+  Values density_excess_half;  ///< rho - rho_0 half a step earlier, kg/m^3
+  Axes acceleration;           ///< m/s^2
+  Axes position_sorted;        ///< position at the last sort, m
+  Values id;                   ///< number given at the start; whole, 0 ... N-1
 
   [[nodiscard]] std::size_t size() const { return position.front().size(); }
-  [[nodiscard]] Vec position_of(std::size_t i) const { return vector_of(position, i); }
-  [[nodiscard]] Vec velocity_of(std::size_t i) const { return vector_of(velocity, i); }
+  [[nodiscard]] VecN<Dim> position_of(std::size_t i) const { return vector_of(position, i); }
+  [[nodiscard]] VecN<Dim> velocity_of(std::size_t i) const { return vector_of(velocity, i); }
 };
+using Particles = ParticlesN<kDim>;
 
 enum class Role {
   state,    ///< needed to go on exactly
@@ -51,37 +55,48 @@ enum class EmptySlot {
 /// The id in an empty slot.
 inline constexpr double kNobody = -1.0;
 
-struct Field {
+template <int Dim>
+struct FieldN {
   std::string_view name;
   std::string_view unit;
   std::string_view description;
   Role role;
   CarriedBy carried_by;
   EmptySlot empty;
-  FieldMember<Particles, Values> values;
+  FieldMember<ParticlesN<Dim>, Values, typename ParticlesN<Dim>::Axes> values;
 };
+using Field = FieldN<kDim>;
 
-/// The one list of fields: memory, reordering, checkpoint and comparison all go by it.
+/// The one list of fields: memory, reordering, checkpoint and comparison all go by it. Each number
+/// of dimensions has its own.
+template <int Dim>
+struct FieldList;
+
 // clang-format off
-inline constexpr std::array kFields{
-    Field{"x", "m", "position, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position, 0}},
-    Field{"y", "m", "position, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position, 1}},
-    Field{"vx", "m/s", "velocity, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::zero, {&Particles::velocity, 0}},
-    Field{"vy", "m/s", "velocity, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::zero, {&Particles::velocity, 1}},
-    Field{"density_excess", "kg/m^3", "density less the reference density", Role::state, CarriedBy::every_scheme, EmptySlot::zero, &Particles::density_excess},
-    Field{"vx_half", "m/s", "velocity half a step earlier, horizontal", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&Particles::velocity_half, 0}},
-    Field{"vy_half", "m/s", "velocity half a step earlier, vertical", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&Particles::velocity_half, 1}},
-    Field{"density_excess_half", "kg/m^3", "density less the reference density, half a step earlier", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, &Particles::density_excess_half},
-    Field{"ax", "m/s^2", "acceleration, horizontal", Role::state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&Particles::acceleration, 0}},
-    Field{"ay", "m/s^2", "acceleration, vertical", Role::state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&Particles::acceleration, 1}},
-    Field{"x_sorted", "m", "position at the last sort, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position_sorted, 0}},
-    Field{"y_sorted", "m", "position at the last sort, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position_sorted, 1}},
-    Field{"id", "1", "number given at the start", Role::state, CarriedBy::every_scheme, EmptySlot::nobody, &Particles::id},
+template <>
+struct FieldList<2> {
+  static constexpr std::array fields{
+      Field{"x", "m", "position, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position, 0}},
+      Field{"y", "m", "position, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position, 1}},
+      Field{"vx", "m/s", "velocity, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::zero, {&Particles::velocity, 0}},
+      Field{"vy", "m/s", "velocity, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::zero, {&Particles::velocity, 1}},
+      Field{"density_excess", "kg/m^3", "density less the reference density", Role::state, CarriedBy::every_scheme, EmptySlot::zero, &Particles::density_excess},
+      Field{"vx_half", "m/s", "velocity half a step earlier, horizontal", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&Particles::velocity_half, 0}},
+      Field{"vy_half", "m/s", "velocity half a step earlier, vertical", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&Particles::velocity_half, 1}},
+      Field{"density_excess_half", "kg/m^3", "density less the reference density, half a step earlier", Role::state, CarriedBy::modified_leap_frog, EmptySlot::zero, &Particles::density_excess_half},
+      Field{"ax", "m/s^2", "acceleration, horizontal", Role::state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&Particles::acceleration, 0}},
+      Field{"ay", "m/s^2", "acceleration, vertical", Role::state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&Particles::acceleration, 1}},
+      Field{"x_sorted", "m", "position at the last sort, horizontal", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position_sorted, 0}},
+      Field{"y_sorted", "m", "position at the last sort, vertical", Role::state, CarriedBy::every_scheme, EmptySlot::nowhere, {&Particles::position_sorted, 1}},
+      Field{"id", "1", "number given at the start", Role::state, CarriedBy::every_scheme, EmptySlot::nobody, &Particles::id},
+  };
 };
 // clang-format on
+inline constexpr const auto& kFields = FieldList<kDim>::fields;
 
 /// Whether particles of this integrator carry the field.
-[[nodiscard]] constexpr bool carries(Integrator integrator, const Field& field) {
+template <int Dim>
+[[nodiscard]] constexpr bool carries(Integrator integrator, const FieldN<Dim>& field) {
   switch (field.carried_by) {
     case CarriedBy::every_scheme:
       return true;
@@ -111,15 +126,17 @@ inline constexpr std::size_t kRemovalCauses = 6;
 
 /// A particle that left the sums, as it was then. What was not finite is 0, a place that of the
 /// last sort. Velocities and densities are 0 in what builds before the exclusion wrote.
-struct RemovedParticle {
+template <int Dim>
+struct RemovedParticleN {
   double id = 0;
   RemovalCause cause = RemovalCause::leaked;
   std::uint64_t step = 0;
-  double time = 0.0;            ///< s
-  Vec position = Vec::Zero();   ///< m
-  Vec velocity = Vec::Zero();   ///< m/s
-  double density_excess = 0.0;  ///< kg/m^3
+  double time = 0.0;                       ///< s
+  VecN<Dim> position = VecN<Dim>::Zero();  ///< m
+  VecN<Dim> velocity = VecN<Dim>::Zero();  ///< m/s
+  double density_excess = 0.0;             ///< kg/m^3
 };
+using RemovedParticle = RemovedParticleN<kDim>;
 
 struct RemovedField {
   std::string_view name;
@@ -140,16 +157,19 @@ inline constexpr std::array kRemovedFields{
 // clang-format on
 
 /// Everything the solver needs to go on as if it had never stopped.
-struct SolverState {
-  Particles particles;
+template <int Dim>
+struct SolverStateN {
+  ParticlesN<Dim> particles;
   std::uint64_t step = 0;
   double time = 0.0;       ///< model time t^n, s
   double time_step = 0.0;  ///< length of the step that led here, s; 0 before the first
-  std::vector<RemovedParticle> removed;
+  std::vector<RemovedParticleN<Dim>> removed;
 };
+using SolverState = SolverStateN<kDim>;
 
-/// Of the fluid, J per metre of depth: kinetic m v^2/2, potential -m f . x, and internal
-/// m c^2 (ln(rho/rho_0) + rho_0/rho - 1), the integral of p/rho^2 of the linear equation of state.
+/// Of the fluid, J, in the plane per metre of depth: kinetic m v^2/2, potential -m f . x, and
+/// internal m c^2 (ln(rho/rho_0) + rho_0/rho - 1), the integral of p/rho^2 of the linear equation
+/// of state.
 struct Energy {
   double kinetic = 0.0;
   double potential = 0.0;

@@ -11,14 +11,16 @@ namespace sluice {
 
 /// Why the particle in a slot is no part of the fluid any more at time t, if so: it is what the
 /// scheme cannot hold, or where the run does not go on, or in a solid.
-[[nodiscard]] std::optional<RemovalCause> cause_to_remove(const Method& method,
-                                                          const FlowDomain& domain,
-                                                          const Particles& particles,
+template <int Dim>
+[[nodiscard]] std::optional<RemovalCause> cause_to_remove(const MethodN<Dim>& method,
+                                                          const FlowDomainN<Dim>& domain,
+                                                          const ParticlesN<Dim>& particles,
                                                           std::size_t slot, double time);
 
 /// What is kept of the particle. Of what is not finite: the place at the last sort, or zero.
-[[nodiscard]] RemovedParticle record_of(const Particles& particles, std::size_t slot,
-                                        RemovalCause cause, std::uint64_t step, double time);
+template <int Dim>
+[[nodiscard]] RemovedParticleN<Dim> record_of(const ParticlesN<Dim>& particles, std::size_t slot,
+                                              RemovalCause cause, std::uint64_t step, double time);
 
 /// Energy that a particle took along, J/m.
 [[nodiscard]] Energy energy_of(const Method& method, const RemovedParticle& removed);

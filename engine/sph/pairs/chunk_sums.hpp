@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/sph/pairs/pair_arrays.hpp"
+#include "engine/sph/pairs/pair_list.hpp"
+#include "engine/sph/pairs/sum_blocks.hpp"
 
 namespace sluice {
 

@@ -1,22 +1,22 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "engine/sph/pairs/pair_arrays.hpp"
 
 namespace sluice {
 
-template <typename T>
+/// Read access to ListPaths.
+template <typename T, int Dim>
 struct ListPathsView {
-  const T* x = nullptr;
-  const T* y = nullptr;
-  const T* u = nullptr;
-  const T* v = nullptr;
+  std::array<const T*, Dim> position{};
+  std::array<const T*, Dim> velocity{};
 };
 
 /// What the lists allow: for `lifetime` a particle may be off its path by `least` and `per_speed`
-/// times its speed, which is taken as |u| + |v|. Units h and c.
+/// times its speed, which is taken as the sum of |U| along all axes. Units h and c.
 template <typename T>
 struct Skin {
   T lifetime{};
@@ -41,26 +41,36 @@ template <typename T>
 /// Where the particles were, and how fast, when the pair lists were made, one entry per slot and
 /// dimensionless as in PairArrays. Lists hold while particles keep to these straight lines: what
 /// moves together needs no new list however fast it is.
-template <typename T>
+template <typename T, int Dim>
 struct ListPaths {
-  AlignedArray<T> x, y;  ///< X
-  AlignedArray<T> u, v;  ///< U
-  double age = 0.0;      ///< of the lists, h/c
+  AlignedAxes<T, Dim> position;  ///< X
+  AlignedAxes<T, Dim> velocity;  ///< U
+  double age = 0.0;              ///< of the lists, h/c
 
   void resize(std::size_t slots) {
-    for (auto* a : {&x, &y, &u, &v}) a->resize(slots);
-  }
-  /// Begins the paths of the slots [begin, end) where they are.
-  void begin(const PairArrays<T>& now, std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      x[s] = now.x[s];
-      y[s] = now.y[s];
-      u[s] = path_speed(now.u[s]);
-      v[s] = path_speed(now.v[s]);
+    for (auto* vector : {&position, &velocity}) {
+      for (AlignedArray<T>& along : *vector) along.resize(slots);
     }
   }
-  [[nodiscard]] ListPathsView<T> view() const { return {x.data(), y.data(), u.data(), v.data()}; }
-  [[nodiscard]] std::size_t bytes() const { return x.bytes() + y.bytes() + u.bytes() + v.bytes(); }
+  /// Begins the paths of the slots [begin, end) where they are.
+  void begin(const PairArrays<T, Dim>& now, std::size_t begin, std::size_t end) {
+    for (std::size_t axis = 0; axis < Dim; ++axis) {
+      for (std::size_t s = begin; s < end; ++s) {
+        position[axis][s] = now.position[axis][s];
+        velocity[axis][s] = path_speed(now.velocity[axis][s]);
+      }
+    }
+  }
+  [[nodiscard]] ListPathsView<T, Dim> view() const {
+    return {data_of<T, Dim>(position), data_of<T, Dim>(velocity)};
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const auto* vector : {&position, &velocity}) {
+      for (const AlignedArray<T>& along : *vector) sum += along.bytes();
+    }
+    return sum;
+  }
 };
 
 /// Farther from its origin cell's origin than this, in h, are only empty slots.

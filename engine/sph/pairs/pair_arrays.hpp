@@ -3,11 +3,10 @@
 #include <hwy/aligned_allocator.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <new>
 #include <utility>
-#include <vector>
 
 namespace sluice {
 
@@ -55,13 +54,22 @@ void resize_closely(Vector& values, std::size_t size) {
   values.resize(size);
 }
 
+/// The values of a vector field, one array an axis.
+template <typename T, int Dim>
+using AlignedAxes = std::array<AlignedArray<T>, Dim>;
+
+template <typename T, int Dim>
+[[nodiscard]] std::array<const T*, Dim> data_of(const AlignedAxes<T, Dim>& axes) {
+  std::array<const T*, Dim> data;
+  for (std::size_t axis = 0; axis < Dim; ++axis) data[axis] = axes[axis].data();
+  return data;
+}
+
 /// Read access to PairArrays.
-template <typename T>
+template <typename T, int Dim>
 struct PairView {
-  const T* x = nullptr;
-  const T* y = nullptr;
-  const T* u = nullptr;
-  const T* v = nullptr;
+  std::array<const T*, Dim> position{};
+  std::array<const T*, Dim> velocity{};
   const T* excess = nullptr;
   const T* volume = nullptr;
   const T* diffused = nullptr;
@@ -71,24 +79,25 @@ struct PairView {
 /// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one entry per
 /// slot. Positions are relative to the origin of the cluster's origin cell, so that single
 /// precision resolves them in a domain of any size.
-template <typename T>
+template <typename T, int Dim>
 struct PairArrays {
-  AlignedArray<T> x, y;           ///< X
-  AlignedArray<T> u, v;           ///< U
+  AlignedAxes<T, Dim> position;   ///< X
+  AlignedAxes<T, Dim> velocity;   ///< U
   AlignedArray<T> excess;         ///< s
   AlignedArray<T> volume;         ///< V
   AlignedArray<T> pressure_term;  ///< A
   AlignedArray<T> diffused;       ///< psi of the density diffusion; empty where that is s
 
   void resize(std::size_t slots) {
-    for (auto* a : {&x, &y, &u, &v, &excess, &volume, &pressure_term}) a->resize(slots);
+    for (auto* vector : {&position, &velocity}) {
+      for (AlignedArray<T>& along : *vector) along.resize(slots);
+    }
+    for (auto* a : {&excess, &volume, &pressure_term}) a->resize(slots);
   }
-  [[nodiscard]] PairView<T> view() const {
+  [[nodiscard]] PairView<T, Dim> view() const {
     const T* psi = diffused.size() > 0 ? diffused.data() : excess.data();
-    return {.x = x.data(),
-            .y = y.data(),
-            .u = u.data(),
-            .v = v.data(),
+    return {.position = data_of<T, Dim>(position),
+            .velocity = data_of<T, Dim>(velocity),
             .excess = excess.data(),
             .volume = volume.data(),
             .diffused = psi,
@@ -96,78 +105,21 @@ struct PairArrays {
   }
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;
-    for (const auto* a : {&x, &y, &u, &v, &excess, &volume, &diffused, &pressure_term}) {
-      sum += a->bytes();
+    for (const auto* vector : {&position, &velocity}) {
+      for (const AlignedArray<T>& along : *vector) sum += along.bytes();
     }
+    for (const auto* a : {&excess, &volume, &diffused, &pressure_term}) sum += a->bytes();
     return sum;
   }
 };
 
 /// Boxes that hold the clusters of a set, in h (ClusterBounds), with tails.
+template <int Dim>
 struct BoxesView {
-  const float* x_min = nullptr;
-  const float* x_max = nullptr;
-  const float* y_min = nullptr;
-  const float* y_max = nullptr;
+  std::array<const float*, Dim> min{};
+  std::array<const float*, Dim> max{};
   const float* x_max_before = nullptr;
   const float* x_min_after = nullptr;
 };
-
-/// For every cluster of a set, the clusters of another that may hold a neighbour, chunk by chunk.
-/// A list of a set with itself is mutual: it holds each pair of clusters once, and what is summed
-/// over it goes to both. Every chunk then has sums of its own, for its clusters and for its halos,
-/// so that no two chunks ever add to the same place and the result does not depend on threads.
-struct PairList {
-  struct Chunk {
-    std::vector<std::uint32_t> entries;  ///< cluster index | origin cell shift code << kShiftBit
-    std::vector<std::uint32_t> begin;    ///< of each cluster of the chunk, and the end
-    std::vector<std::uint32_t> targets;  ///< mutual: place of each entry in the chunk's sums
-    std::vector<std::uint32_t> halos;    ///< mutual: clusters of later chunks that have a place,
-                                         ///< behind the chunk's own
-
-    /// Places in the sums: own clusters, halos, and one that nobody reads.
-    [[nodiscard]] std::size_t places() const { return begin.size() + halos.size(); }
-  };
-  static constexpr std::uint32_t kShiftBit = 28;
-  static constexpr std::uint32_t kClusterMask = (1U << kShiftBit) - 1U;
-
-  std::vector<Chunk> chunks;
-
-  [[nodiscard]] std::size_t bytes() const {
-    std::size_t sum = 0;
-    for (const Chunk& c : chunks) {
-      for (const auto* a : {&c.entries, &c.begin, &c.targets, &c.halos}) sum += 4 * a->capacity();
-    }
-    return sum;
-  }
-};
-
-/// How the sums of a mutual list lie in memory: `stride` values per place, in blocks of one value
-/// per particle of the cluster. A block that a sweep does not sum is 0.
-struct SumBlocks {
-  std::size_t stride = 0;
-  std::size_t density = 0;
-  std::size_t y = 0;
-  std::size_t x = 0;
-  std::size_t trace = 0;
-};
-inline constexpr SumBlocks kDensitySums{kCluster, 0, 0, 0};
-inline constexpr SumBlocks kAccelerationSums{2 * kCluster, 0, 0, kCluster};
-/// With particle shifting: eq. 4, and sums that tell where particles lack (ShiftingTerm).
-inline constexpr SumBlocks kDensityAndShiftingSums{4 * kCluster, 0, kCluster, 2 * kCluster,
-                                                   3 * kCluster};
-inline constexpr SumBlocks kRateSums{4 * kCluster, 0, kCluster, 2 * kCluster};
-/// eq. 10: `density` is the numerator, `x` the divisor.
-inline constexpr SumBlocks kReinitialisationSums{2 * kCluster, 0, 0, kCluster};
-
-/// Sums that a chunk holds for a cluster of another: its `place` there, and the cluster's number in
-/// its own chunk.
-struct Contribution {
-  std::uint32_t chunk, place, cluster;
-};
-
-/// Origin cell shift codes 0-8: (X_j's origin cell - X_i's origin cell) + 1 in each direction, row
-/// by row; 4 is the same origin cell.
-inline constexpr std::uint32_t kSameOriginCell = 4;
 
 }  // namespace sluice

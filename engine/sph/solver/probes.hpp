@@ -9,10 +9,12 @@
 namespace sluice {
 
 /// Values of the fluid at a point, from the particles around it. Finds them by the order in memory.
+template <int Dim>
 class FluidProbe {
  public:
-  FluidProbe(const Method& method, const FlowDomain& domain, const Particles& particles,
-             const Layout& layout, const ClusterBounds& bounds, SumAround sum_around)
+  FluidProbe(const MethodN<Dim>& method, const FlowDomainN<Dim>& domain,
+             const ParticlesN<Dim>& particles, const Layout& layout,
+             const ClusterBounds<Dim>& bounds, SumAround<Dim> sum_around)
       : method_(method),
         domain_(domain),
         particles_(particles),
@@ -21,26 +23,26 @@ class FluidProbe {
         sum_around_(sum_around) {}
 
   /// eq. 11 with smoothing length h, Pa; the weight is sum W V.
-  [[nodiscard]] Probe pressure(const Vec& point, double h) const;
-  /// Highest point at x where sum W V reaches a half, m.
-  [[nodiscard]] Probe surface_height(double x) const;
+  [[nodiscard]] Probe pressure(const VecN<Dim>& point, double h) const;
+  /// Highest point straight above or below `place` where sum W V reaches a half, m.
+  [[nodiscard]] Probe surface_height(const VecN<Dim>& place) const;
   /// To the nearest particle, m; infinity when none is within the support.
-  [[nodiscard]] double distance(const Vec& point) const;
+  [[nodiscard]] double distance(const VecN<Dim>& point) const;
 
  private:
-  /// Calls body(row) for those that may hold particles from `low` to `high`, in h.
+  /// Calls body(row) for those that may hold particles of a box in h.
   template <class Body>
-  void for_rows_in(float low, float high, const Body& body) const;
+  void for_rows_in(const BoxN<Dim>& box, const Body& body) const;
   /// Calls body(slot) for at least all particles in the box.
   template <class Body>
-  void for_each_in(const Box& box, const Body& body) const;
+  void for_each_in(const BoxN<Dim>& box, const Body& body) const;
 
-  const Method& method_;
-  const FlowDomain& domain_;
-  const Particles& particles_;
+  const MethodN<Dim>& method_;
+  const FlowDomainN<Dim>& domain_;
+  const ParticlesN<Dim>& particles_;
   const Layout& layout_;
-  const ClusterBounds& bounds_;
-  SumAround sum_around_;
+  const ClusterBounds<Dim>& bounds_;
+  SumAround<Dim> sum_around_;
 };
 
 }  // namespace sluice

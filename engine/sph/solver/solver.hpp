@@ -53,16 +53,18 @@ struct Probe {
 /// The WCSPH solver: particles, walls and the passes of a step, chosen once for the terms of
 /// `Method`. Results depend on `Method`, `FlowDomain`, the initial state and the SIMD target only;
 /// any number of threads gives the same bits.
-class Solver {
+template <int Dim>
+class SolverN {
  public:
   /// Starts from particles at rest in time (`state.step == 0`, only x, y, vx, vy, density_excess
   /// and id filled) or goes on from a state taken by `state()`. `walls` are the positions of the
   /// dummy particles, m.
-  Solver(const Method& method, const FlowDomain& domain, const SolverState& state,
-         const std::vector<Vec>& walls, const Execution& execution);
-  ~Solver();
-  Solver(Solver&&) noexcept;
-  Solver& operator=(Solver&&) noexcept;
+  SolverN(const MethodN<Dim>& method, const FlowDomainN<Dim>& domain,
+          const SolverStateN<Dim>& state, const std::vector<VecN<Dim>>& walls,
+          const Execution& execution);
+  ~SolverN();
+  SolverN(SolverN&&) noexcept;
+  SolverN& operator=(SolverN&&) noexcept;
 
   /// One time step.
   void step();
@@ -73,13 +75,13 @@ class Solver {
   [[nodiscard]] StepLimit step_limit() const;  ///< what limited it
   [[nodiscard]] std::size_t particle_count() const;
   [[nodiscard]] std::size_t wall_count() const;
-  [[nodiscard]] const std::vector<RemovedParticle>& removed() const;
+  [[nodiscard]] const std::vector<RemovedParticleN<Dim>>& removed() const;
   [[nodiscard]] const Extremes& extremes() const;
   [[nodiscard]] std::string_view simd_target() const;
   [[nodiscard]] int threads() const;
 
   /// A copy of the state, particles in their order.
-  [[nodiscard]] SolverState state() const;
+  [[nodiscard]] SolverStateN<Dim> state() const;
 
   /// Calls body(i) for each i in [0, count) on the solver's threads, for sensors: `body` may ask
   /// for anything of the point probes below. It must not throw, for an exception ends the process,
@@ -89,15 +91,15 @@ class Solver {
   /// Energy now. Summed in the order of particles in memory.
   [[nodiscard]] Energy energy() const;
   /// eq. 11 with smoothing length `h`, Pa.
-  [[nodiscard]] Probe pressure_at(const Vec& point, double h) const;
+  [[nodiscard]] Probe pressure_at(const VecN<Dim>& point, double h) const;
   /// Highest point straight above or below `place` where the fluid fills at least half of the
   /// kernel, m; weight 0 when there is none.
-  [[nodiscard]] Probe surface_height_at(const Vec& place) const;
+  [[nodiscard]] Probe surface_height_at(const VecN<Dim>& place) const;
   /// Largest x of any fluid particle plus half a spacing, m; weight 0 without particles.
   [[nodiscard]] Probe surge_front() const;
   /// Distance of the nearest fluid particle to `point`, m; infinity when there is none within the
   /// support.
-  [[nodiscard]] double distance_to_fluid(const Vec& point) const;
+  [[nodiscard]] double distance_to_fluid(const VecN<Dim>& point) const;
   /// Pressures of the dummy particles, Pa, in the order of `walls`, as the last step summed them;
   /// zero before the first step of this object.
   [[nodiscard]] std::vector<double> wall_pressures() const;
@@ -115,5 +117,7 @@ class Solver {
  private:
   std::unique_ptr<Impl> impl_;
 };
+
+using Solver = SolverN<kDim>;
 
 }  // namespace sluice

@@ -19,7 +19,7 @@ constexpr int kWaves = 12;
 /// What a pair of rows adds, for one distance along the sheet.
 struct RowPair {
   Eigen::Index i, j;
-  Vec distance;                ///< X_ij
+  VecN<2> distance;            ///< X_ij
   double weight;               ///< V_j slope
   std::complex<double> phase;  ///< value of the wave at j over that at i
 };
@@ -62,7 +62,7 @@ SheetWave sheet_wave(const Method& m, double k, double approaching) {
   for (int i = 0; i < kRows; ++i) {
     for (int j = 0; j < kRows; ++j) {
       for (int n = -reach; n <= reach; ++n) {
-        const Vec distance = spacing * Vec(n, i - j);
+        const VecN<2> distance = spacing * VecN<2>(n, i - j);
         const double r_sq = distance.squaredNorm();
         if (r_sq == 0.0 || r_sq >= support * support) continue;
         add({i, j, distance, spacing * spacing * kernel_slope(m.kernel, r_sq),

@@ -8,9 +8,9 @@
 
 namespace sluice {
 
-/// The sums of eqs. 4, 5, 7 and 8 for a small wave exp(i k x) that runs along a sheet of a few rows
-/// of particles with a free surface above and below, in units of h and c: with velocities U of all
-/// rows and densities s,
+/// The sums of eqs. 4, 5, 7 and 8 for a small wave exp(i k x) that runs along a sheet of the
+/// plane, a few rows of particles with a free surface above and below, in units of h and c: with
+/// velocities U of all rows and densities s,
 ///   dU/dt = pressure s - damping U,  ds/dt = divergence U - diffusion s.
 /// The particles at a surface lack half of their neighbours, which makes the fastest pressure wave
 /// some 7 % faster than any in the bulk.

@@ -77,7 +77,7 @@ LatticeStability::LatticeStability(const Method& method, Surface surface)
   const int reach = static_cast<int>(support / spacing_) + 1;
   for (int i = -reach; i <= reach; ++i) {
     for (int j = -reach; j <= reach; ++j) {
-      const Vec distance = spacing_ * Vec(i, j);
+      const VecN<2> distance = spacing_ * VecN<2>(i, j);
       if ((i == 0 && j == 0) || distance.norm() >= support) continue;
       neighbours_.push_back(
           {distance, spacing_ * spacing_ * kernel_slope(method.kernel, distance.squaredNorm())});
@@ -85,12 +85,12 @@ LatticeStability::LatticeStability(const Method& method, Surface surface)
   }
   const double step = std::numbers::pi / spacing_ / kWaves;
   for (int i = 1; i <= kWaves; ++i) {
-    for (int j = 0; j <= i; ++j) waves_.push_back(wave(step * Vec(i, j)));
+    for (int j = 0; j <= i; ++j) waves_.push_back(wave(step * VecN<2>(i, j)));
   }
   if (surface == Surface::free) sheets_ = sheet_waves(method, kApproaching);
 }
 
-LatticeWave LatticeStability::wave(const Vec& k) const {
+LatticeWave LatticeStability::wave(const VecN<2>& k) const {
   LatticeWave w;
   w.wave_vector = k;
   for (const Neighbour& n : neighbours_) {
@@ -140,16 +140,16 @@ bool LatticeStability::lower(const Wave& wave, double& limit) const {
 
 double LatticeStability::courant_limit() const {
   double limit = kMostCourant;
-  Vec worst = Vec::Zero();
+  VecN<2> worst = VecN<2>::Zero();
   for (const LatticeWave& w : waves_) {
     if (lower(w, limit)) worst = w.wave_vector;
   }
   // The worst wave lies between those looked at: search around it, closer each time.
   for (double step = std::numbers::pi / spacing_ / kWaves / 2; step > 1e-3; step /= 2) {
-    const Vec center = worst;
+    const VecN<2> center = worst;
     for (int i = -1; i <= 1; ++i) {
       for (int j = -1; j <= 1; ++j) {
-        const LatticeWave w = wave(center + step * Vec(i, j));
+        const LatticeWave w = wave(center + step * VecN<2>(i, j));
         if (lower(w, limit)) worst = w.wave_vector;
       }
     }

@@ -11,12 +11,12 @@
 namespace sluice {
 
 /// What the sums of eqs. 4, 5, 7 and 8 and the physical viscosity make of a small plane wave exp(i
-/// k . x) on a square lattice at rest, in units of h and c. With velocity U and density s = i sigma
-/// the rates are
+/// k . x) of the plane on a square lattice at rest, in units of h and c. With velocity U and
+/// density s = i sigma the rates are
 ///   dU/dt = gradient sigma - damping U,  dsigma/dt = -gradient . U - diffusion sigma.
 struct LatticeWave {
-  Vec wave_vector = Vec::Zero();                      ///< k h
-  Vec gradient = Vec::Zero();                         ///< sum_j V_j slope X_ij sin(k . X_ij)
+  VecN<2> wave_vector = VecN<2>::Zero();              ///< k h
+  VecN<2> gradient = VecN<2>::Zero();                 ///< sum_j V_j slope X_ij sin(k . X_ij)
   Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();  ///< of eq. 8 and physical viscosity
   double diffusion = 0.0;                             ///< of eq. 7
   std::array<std::complex<double>, 3> rates{};        ///< eigenvalues of the rates, c/h
@@ -25,12 +25,12 @@ struct LatticeWave {
 /// Whether waves along a free surface are looked at beside those of the bulk.
 enum class Surface { none, free };
 
-/// Von Neumann analysis of the discrete scheme: the amplification matrix of one step for waves of
-/// the Brillouin zone, computed from the method's kernel, h/dx, alpha, epsilon, delta and
-/// integrator as the engine does them. Eq. 8 acts between particles that approach, which is half of
-/// the pairs of a short wave and half of the time for a long one, so it counts half. Left out:
-/// walls, gravity, pressure at rest (p << rho_0 c^2), and wall friction.
-/// Sources: eqs. 13-17 (they are Adams-Bashforth 2 for velocity and density), Adami et al. 2012.
+/// Von Neumann analysis of the discrete scheme in the plane: the amplification matrix of one step
+/// for waves of the Brillouin zone, computed from the method's kernel, h/dx, alpha, epsilon, delta
+/// and integrator as the engine does them. Eq. 8 acts between particles that approach, which is
+/// half of the pairs of a short wave and half of the time for a long one, so it counts half. Left
+/// out: walls, gravity, pressure at rest (p << rho_0 c^2), and wall friction. Sources: eqs. 13-17
+/// (they are Adams-Bashforth 2 for velocity and density), Adami et al. 2012.
 class LatticeStability {
  public:
   LatticeStability(const Method& method, Surface surface);
@@ -49,7 +49,7 @@ class LatticeStability {
   static constexpr double kTolerance = 1e-9;
 
  private:
-  [[nodiscard]] LatticeWave wave(const Vec& k) const;
+  [[nodiscard]] LatticeWave wave(const VecN<2>& k) const;
   [[nodiscard]] double radius(const LatticeWave& wave, double courant) const;
   [[nodiscard]] double radius(const SheetWave& wave, double courant) const;
   /// Lowers `limit` to that of `wave`, if it is lower; true when it was.
@@ -57,8 +57,8 @@ class LatticeStability {
   bool lower(const Wave& wave, double& limit) const;
 
   struct Neighbour {
-    Vec distance;   ///< X_ij = x_ij/h
-    double weight;  ///< V_j slope
+    VecN<2> distance;  ///< X_ij = x_ij/h
+    double weight;     ///< V_j slope
   };
   Integrator integrator_;
   double alpha_ = 0.0;

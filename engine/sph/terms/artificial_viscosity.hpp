@@ -50,8 +50,8 @@ struct ArtificialViscosity {
   struct Constants {
     T alpha{}, epsilon{}, beta{};
   };
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation&, Neighbours) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>&, Neighbours) const {
     return {static_cast<T>(alpha), static_cast<T>(epsilon), static_cast<T>(beta)};
   }
 };
@@ -78,8 +78,8 @@ struct WallArtificialViscosity {
   struct Constants {
     T alpha{}, epsilon{};
   };
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation&, Neighbours) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>&, Neighbours) const {
     return {static_cast<T>(alpha), static_cast<T>(epsilon)};
   }
 };
@@ -105,9 +105,9 @@ namespace sluice::HWY_NAMESPACE {
 /// Of both: form 1 has the quadratic part.
 template <int kForm>
 struct Summand<ArtificialViscosity, kForm> : NoSummand {
-  template <class D, class K, class V, class J>
-  static HWY_INLINE V add_along(D d, const K& k, V sum, const PairGeometry<V>& pair,
-                                const PairI<V>& i, const J& j) {
+  template <class D, class K, class V, int Dim, class J>
+  static HWY_INLINE V add_along(D d, const K& k, V sum, const PairGeometry<V, Dim>& pair,
+                                const PairI<V, Dim>& i, const J& j) {
     const V mean_density = hn::MulAdd(hn::Set(d, hn::TFromD<D>(0.5)), j.excess(), i.half);
     const V divisor = mean_density * (pair.r_sq + hn::Set(d, k.epsilon));
     const V approach = hn::Min(pair.approach, hn::Zero(d)) / divisor;

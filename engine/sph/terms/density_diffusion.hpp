@@ -53,8 +53,8 @@ struct DensityDiffusion {
   /// The density of a wall follows from eq. 9 and is not kept: an exchange with it is a source,
   /// which lifts still water for ever. Only where the hydrostatic part is diffused as well must the
   /// walls hold against it.
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation&, Neighbours j) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>&, Neighbours j) const {
     const bool diffuses = j == Neighbours::fluid || kind == DiffusionKind::molteni_colagrossi;
     return {diffuses ? static_cast<T>(2.0 * delta) : T{0}};
   }
@@ -76,8 +76,8 @@ namespace sluice::HWY_NAMESPACE {
 
 template <>
 struct Summand<DensityDiffusion> : NoSummand {
-  template <class D, class K, class V, class J>
-  static HWY_INLINE V add_exchange(D d, const K& k, V sum, const PairI<V>& i, const J& j) {
+  template <class D, class K, class V, int Dim, class J>
+  static HWY_INLINE V add_exchange(D d, const K& k, V sum, const PairI<V, Dim>& i, const J& j) {
     return hn::MulAdd(hn::Set(d, k.two_delta), j.diffused() - i.diffused, sum);
   }
 };

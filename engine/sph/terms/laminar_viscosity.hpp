@@ -33,7 +33,8 @@ struct LaminarViscosity {
   [[nodiscard]] std::string_view in_report() const { return "nu {nu:g} m^2/s and no slip"; }
 
   /// 2 nu/(c h): nu in the units of the sums.
-  [[nodiscard]] double two_nu(const Discretisation& d) const {
+  template <int Dim>
+  [[nodiscard]] double two_nu(const DiscretisationN<Dim>& d) const {
     return 2.0 * nu / (d.sound_speed * d.smoothing_length);
   }
 
@@ -42,8 +43,8 @@ struct LaminarViscosity {
   struct Constants {
     T two_nu{};
   };
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation& d, Neighbours) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>& d, Neighbours) const {
     return {static_cast<T>(two_nu(d))};
   }
 };
@@ -54,8 +55,9 @@ struct InMethod<LaminarViscosity> {
 };
 
 /// 2 nu/(c h) of a method that may lack the term; then 0.
-[[nodiscard]] inline double scaled_two_nu(const std::optional<LaminarViscosity>& term,
-                                          const Discretisation& d) {
+template <int Dim>
+[[nodiscard]] double scaled_two_nu(const std::optional<LaminarViscosity>& term,
+                                   const DiscretisationN<Dim>& d) {
   return term ? term->two_nu(d) : 0.0;
 }
 
@@ -70,8 +72,8 @@ namespace sluice::HWY_NAMESPACE {
 
 template <>
 struct Summand<LaminarViscosity> : NoSummand {
-  template <class D, class K, class V>
-  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V>&, V velocity_i,
+  template <class D, class K, class V, int Dim>
+  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V, Dim>&, V velocity_i,
                                     V velocity_j) {
     return hn::NegMulAdd(g, hn::Set(d, k.two_nu) * (velocity_i - velocity_j), sum);
   }

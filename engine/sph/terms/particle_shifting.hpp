@@ -52,20 +52,16 @@ struct InMethod<ParticleShifting> {
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 
-/// -h grad C = sum_j V_j g X_ij, and the trace of the matrix sum_j V_j g X_ij X_ij, 2 inside the
-/// fluid and less where neighbours lack. Summands before V_j g; x and y change their sign for
-/// particle j, the trace does not.
+/// -h grad C = sum_j V_j g X_ij, and the trace of the matrix sum_j V_j g X_ij X_ij, which is
+/// SpaceTraits::trace_inside inside the fluid and less where neighbours lack. Summands before V_j
+/// g; components change their sign for particle j, the trace does not.
 struct ShiftingSummands {
-  template <class V>
-  static HWY_INLINE V x(const PairGeometry<V>& pair) {
-    return pair.dx;
+  template <class V, int Dim>
+  static HWY_INLINE V component(const PairGeometry<V, Dim>& pair, std::size_t axis) {
+    return pair.x_ij[axis];
   }
-  template <class V>
-  static HWY_INLINE V y(const PairGeometry<V>& pair) {
-    return pair.dy;
-  }
-  template <class V>
-  static HWY_INLINE V trace(const PairGeometry<V>& pair) {
+  template <class V, int Dim>
+  static HWY_INLINE V trace(const PairGeometry<V, Dim>& pair) {
     return pair.r_sq;
   }
 };

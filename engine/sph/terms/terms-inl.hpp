@@ -16,49 +16,55 @@
 
 #include <hwy/highway.h>
 
+#include <array>
+#include <cstddef>
+
+#include "engine/space/dot-inl.hpp"
+#include "engine/space/unroll-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// What every term may need of a pair.
-template <class V>
+template <class V, int Dim>
 struct PairGeometry {
-  V dx, dy;    ///< x_ij / h
-  V r_sq;      ///< |x_ij|^2 / h^2
-  V approach;  ///< v_ij . x_ij / (c h); negative when the two come nearer
+  std::array<V, Dim> x_ij;  ///< x_ij / h
+  V r_sq;                   ///< |x_ij|^2 / h^2
+  V approach;               ///< v_ij . x_ij / (c h); negative when the two come nearer
 };
 
 /// What a term may need of the particles i of a vector.
-template <class V>
+template <class V, int Dim>
 struct PairI {
-  V u, v;           ///< U
-  V speed;          ///< |U|
-  V density;        ///< 1 + s
-  V half;           ///< 1 + s/2, so that half_i + s_j/2 is the mean density of the pair
-  V volume;         ///< V
-  V diffused;       ///< psi of the density diffusion
-  V pressure_term;  ///< A
+  std::array<V, Dim> velocity;  ///< U
+  V speed;                      ///< |U|
+  V density;                    ///< 1 + s
+  V half;                       ///< 1 + s/2, so that half_i + s_j/2 is the mean density of the pair
+  V volume;                     ///< V
+  V diffused;                   ///< psi of the density diffusion
+  V pressure_term;              ///< A
 };
 
 /// What a term adds to the sums: nothing. The summand of a term is derived from it and replaces
 /// what the term adds to. `k` are its constants. `j` has what PairI has of the particles j, read
-/// when asked: u(), v(), excess() (s), volume(), diffused(), pressure_term().
+/// when asked: velocity(axis), excess() (s), volume(), diffused(), pressure_term().
 struct NoSummand {
   /// Adds to what diffuses from j to i, before V_j g and antisymmetric.
-  template <class D, class K, class V, class J>
-  static HWY_INLINE V add_exchange(D, const K&, V sum, const PairI<V>&, const J&) {
+  template <class D, class K, class V, int Dim, class J>
+  static HWY_INLINE V add_exchange(D, const K&, V sum, const PairI<V, Dim>&, const J&) {
     return sum;
   }
   /// Adds to the symmetric factor of the acceleration along x_ij, before X_ij g.
-  template <class D, class K, class V, class J>
-  static HWY_INLINE V add_along(D, const K&, V sum, const PairGeometry<V>&, const PairI<V>&,
-                                const J&) {
+  template <class D, class K, class V, int Dim, class J>
+  static HWY_INLINE V add_along(D, const K&, V sum, const PairGeometry<V, Dim>&,
+                                const PairI<V, Dim>&, const J&) {
     return sum;
   }
   /// Adds to one component of the acceleration, in any direction, g included.
-  template <class D, class K, class V>
-  static HWY_INLINE V add_component(D, const K&, V sum, V /*g*/, const PairI<V>&, V /*velocity_i*/,
-                                    V /*velocity_j*/) {
+  template <class D, class K, class V, int Dim>
+  static HWY_INLINE V add_component(D, const K&, V sum, V /*g*/, const PairI<V, Dim>&,
+                                    V /*velocity_i*/, V /*velocity_j*/) {
     return sum;
   }
 };
@@ -70,13 +76,13 @@ struct Summand;
 /// Continuity, eq. 4: D rho_i/Dt = rho_i sum_j (m_j/rho_j) v_ij . grad_i W_ij. Summand before V_j
 /// g.
 struct Continuity {
-  template <class V>
-  static HWY_INLINE V add_to(V summand, const PairGeometry<V>& pair, V density_i) {
+  template <class V, int Dim>
+  static HWY_INLINE V add_to(V summand, const PairGeometry<V, Dim>& pair, V density_i) {
     return hn::NegMulAdd(density_i, pair.approach, summand);
   }
   /// The same for particle j before -V_i g; `exchange` is what diffuses from j to i.
-  template <class V>
-  static HWY_INLINE V add_for_j(V exchange, const PairGeometry<V>& pair, V density_j) {
+  template <class V, int Dim>
+  static HWY_INLINE V add_for_j(V exchange, const PairGeometry<V, Dim>& pair, V density_j) {
     return hn::MulAdd(density_j, pair.approach, exchange);
   }
 };

@@ -23,14 +23,14 @@ namespace sluice::HWY_NAMESPACE {
 
 /// eq. 9: (sum_f p_f W + sum_f rho_f f . (x_w - x_f) W) / sum_f W. Summand before W, in units of
 /// rho_0 c^2.
-template <typename T>
+template <typename T, int Dim>
 struct WallPressureSummand {
-  T gravity_x;  ///< f h/c^2
-  T gravity_y;
+  std::array<T, Dim> gravity;  ///< f h/c^2
 
   template <class D, class V>
-  HWY_INLINE V summand(D d, V dx, V dy, V excess_f) const {
-    const V head = hn::MulAdd(hn::Set(d, gravity_x), dx, hn::Set(d, gravity_y) * dy);
+  HWY_INLINE V summand(D d, const std::array<V, Dim>& x_wf, V excess_f) const {
+    const V head =
+        dot(array_of<Dim>([&](auto axis) HWY_ATTR { return hn::Set(d, gravity[axis]); }), x_wf);
     return hn::MulAdd(hn::Set(d, T{1}) + excess_f, head, excess_f);
   }
 };

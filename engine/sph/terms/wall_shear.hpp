@@ -7,6 +7,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "engine/space/lattice.hpp"
+#include "engine/space/space_traits.hpp"
 #include "engine/sph/kernel/discretisation.hpp"
 #include "engine/sph/terms/parameter.hpp"
 #include "engine/sph/terms/term.hpp"
@@ -14,19 +16,21 @@
 namespace sluice {
 
 /// The stress that a viscous stress puts on fluid sliding along a wall, over 2 rho_0 nu |v|/h, on a
-/// lattice that goes on in the wall: (dx/h)^3 sum n slope(R^2), for in n rows of fluid there is a
-/// row of the wall n dx below.
-[[nodiscard]] inline double stress_across_wall(const Discretisation& d) {
+/// lattice that goes on in the wall: (dx/h)^(d+1) sum n slope(R^2), for in n rows of fluid there is
+/// a row of the wall n dx below.
+template <int Dim>
+[[nodiscard]] double stress_across_wall(const DiscretisationN<Dim>& d) {
   const double dx = d.spacing / d.smoothing_length;
   const int reach = static_cast<int>(d.support_ratio() / dx) + 1;
+  CellN<Dim> first = shifted<Dim>({}, -reach);
+  first[kUpAxis] = 1;
   double sum = 0.0;
-  for (int n = 1; n <= reach; ++n) {
-    for (int along = -reach; along <= reach; ++along) {
-      const double r_sq = dx * dx * static_cast<double>(n * n + along * along);
-      if (r_sq < d.support_ratio() * d.support_ratio()) sum += n * kernel_slope(d.kernel, r_sq);
-    }
-  }
-  return dx * dx * dx * sum;
+  for_each_cell<Dim>(first, shifted<Dim>({}, reach), [&](const CellN<Dim>& cell) {
+    const double r_sq = dx * dx * as_vector<Dim>(cell).squaredNorm();
+    if (r_sq >= d.support_ratio() * d.support_ratio()) return;
+    sum += static_cast<double>(cell[kUpAxis]) * kernel_slope<Dim>(d.kernel, r_sq);
+  });
+  return times_power<Dim + 1>(1.0, dx) * sum;
 }
 
 /// Wall law: the stress Cf/2 rho_0 |v| v of a turbulent boundary layer too thin to be resolved, on
@@ -54,8 +58,8 @@ struct WallShear {
   struct Constants {
     T two_nu_by_speed{};  ///< 2 nu_i/(c h) over |v_i|/c
   };
-  template <typename T>
-  [[nodiscard]] Constants<T> constants(const Discretisation& d, Neighbours) const {
+  template <typename T, int Dim>
+  [[nodiscard]] Constants<T> constants(const DiscretisationN<Dim>& d, Neighbours) const {
     return {static_cast<T>(coefficient / (2.0 * stress_across_wall(d)))};
   }
 };
@@ -76,9 +80,9 @@ namespace sluice::HWY_NAMESPACE {
 
 template <>
 struct Summand<WallShear> : NoSummand {
-  template <class D, class K, class V>
-  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V>& i, V velocity_i,
-                                    V /*velocity_j*/) {
+  template <class D, class K, class V, int Dim>
+  static HWY_INLINE V add_component(D d, const K& k, V sum, V g, const PairI<V, Dim>& i,
+                                    V velocity_i, V /*velocity_j*/) {
     return hn::NegMulAdd(g, hn::Set(d, k.two_nu_by_speed) * i.speed * velocity_i, sum);
   }
 };

@@ -1,16 +1,17 @@
-#include "engine/sph/stability/neighbour_count.hpp"
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
+#include "engine/sph/stability/neighbour_count.hpp"
+
 namespace sluice {
-namespace {
 
 /// Over all particles, neighbour by neighbour.
-template <typename T>
-std::uint32_t count_most(const Layout& layout, const PairList& list, const PairArrays<T>& pairs,
-                         T cut_off) {
+template <typename T, int Dim>
+std::uint32_t count_most(const Layout& layout, const PairList& list,
+                         const PairArrays<T, Dim>& pairs, T cut_off) {
   std::vector<std::uint32_t> count(layout.slots(), 0);
   const T cut_off_sq = cut_off * cut_off;
   for (std::size_t k = 0; k < list.chunks.size(); ++k) {
@@ -18,12 +19,14 @@ std::uint32_t count_most(const Layout& layout, const PairList& list, const PairA
     for (std::size_t c = 0; c + 1 < chunk.begin.size(); ++c) {
       const std::size_t first_i = kCluster * (layout.chunk_begin(k) + c);
       for (std::uint32_t e = chunk.begin[c]; e < chunk.begin[c + 1]; ++e) {
-        const std::size_t first_j = kCluster * (chunk.entries[e] & PairList::kClusterMask);
+        const std::size_t first_j = kCluster * ListEntry<Dim>::cluster(chunk.entries[e]);
         for (std::size_t i = first_i; i < first_i + kCluster; ++i) {
           for (std::size_t j = first_j; j < first_j + kCluster; ++j) {
-            const T dx = pairs.x[i] - pairs.x[j];
-            const T dy = pairs.y[i] - pairs.y[j];
-            if (!(dx * dx + dy * dy < cut_off_sq)) continue;
+            T r_sq{};
+            for (const AlignedArray<T>& along : pairs.position) {
+              r_sq += (along[i] - along[j]) * (along[i] - along[j]);
+            }
+            if (!(r_sq < cut_off_sq)) continue;
             ++count[i];
             if (first_i != first_j) ++count[j];
           }
@@ -34,11 +37,9 @@ std::uint32_t count_most(const Layout& layout, const PairList& list, const PairA
   return count.empty() ? 0 : *std::max_element(count.begin(), count.end());
 }
 
-}  // namespace
-
-template <typename T>
+template <typename T, int Dim>
 std::uint32_t most_neighbours(ThreadTeam& team, const Layout& layout, const PairList& list,
-                              const ChunkSums<T>& sums, const PairArrays<T>& pairs,
+                              const ChunkSums<T>& sums, const PairArrays<T, Dim>& pairs,
                               double cut_off) {
   const std::vector<PairList::Chunk>& chunks = list.chunks;
   // Entries that a cluster takes part in, per place of each chunk.
@@ -63,12 +64,5 @@ std::uint32_t most_neighbours(ThreadTeam& team, const Layout& layout, const Pair
   most = count_most(layout, list, pairs, static_cast<T>(cut_off));
   return most > kManyNeighbours ? most : 0;
 }
-
-template std::uint32_t most_neighbours<float>(ThreadTeam&, const Layout&, const PairList&,
-                                              const ChunkSums<float>&, const PairArrays<float>&,
-                                              double);
-template std::uint32_t most_neighbours<double>(ThreadTeam&, const Layout&, const PairList&,
-                                               const ChunkSums<double>&, const PairArrays<double>&,
-                                               double);
 
 }  // namespace sluice

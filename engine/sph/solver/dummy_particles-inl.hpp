@@ -1,51 +1,56 @@
-#include "engine/sph/solver/dummy_particles.hpp"
+#pragma once
 
 #include <algorithm>
+#include <array>
 #include <utility>
+
+#include "engine/sph/solver/cluster_bounds-inl.hpp"
+#include "engine/sph/solver/dummy_particles.hpp"
 
 namespace sluice {
 
-template <typename T>
-DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Method& method,
-                                  const std::optional<GateMotion>& gate,
-                                  const std::vector<Vec>& places)
+template <typename T, int Dim>
+DummyParticles<T, Dim>::DummyParticles(ThreadTeam& team, const Grid<Dim>& grid,
+                                       const MethodN<Dim>& method,
+                                       const std::optional<GateMotionN<Dim>>& gate,
+                                       const std::vector<VecN<Dim>>& places)
     : count_(places.size()) {
   if (places.empty()) return;
-  std::vector<double> x(count_);
-  std::vector<double> y(count_);
+  std::array<std::vector<double>, Dim> position;
   std::vector<double> id(count_);
   for (std::size_t i = 0; i < count_; ++i) {
-    x[i] = places[i].x();
-    y[i] = places[i].y();
+    append(position, places[i]);
     id[i] = static_cast<double>(i);
   }
-  Order order = sort_into_clusters(team, grid, x, y, id);
+  Order order = sort_into_clusters<Dim>(team, grid, spans_of<Dim>(position), id);
   layout_ = std::move(order.layout);
   source_ = std::move(order.source);
   const std::size_t slots = layout_.slots();
   arrays_.resize(slots);
   excess_.resize(slots);
-  std::vector<double> slot_x(slots, 0.0);
-  std::vector<double> slot_y(slots, 0.0);
-  std::vector<double> slot_id(slots, -1.0);
+  std::array<std::vector<double>, Dim> slot_position;
+  for (std::vector<double>& along : slot_position) along.resize(slots, 0.0);
+  std::vector<double> slot_id(slots, kNobody);
   for (std::size_t s = 0; s < slots; ++s) {
     const std::uint32_t i = source_[s];
     if (i == Order::kEmpty) continue;
-    slot_x[s] = x[i];
-    slot_y[s] = y[i];
+    for (std::size_t axis = 0; axis < Dim; ++axis) slot_position[axis][s] = position[axis][i];
     slot_id[s] = id[i];
     if (gate && gate->place.contains(places[i])) {
       lifted_.push_back({places[i], s});
     }
   }
-  bounds_.assign_origin_cells(team, grid, layout_, slot_x.data(), slot_y.data(), slot_id.data());
+  bounds_.assign_origin_cells(team, grid, layout_, spans_of<Dim>(slot_position), slot_id);
   // Empty slots lie on the other side than those of the fluid.
   const double h = method.smoothing_length;
   for (std::size_t s = 0; s < slots; ++s) {
     const bool used = slot_id[s] >= 0.0;
-    const Vec origin = grid.origin_cell_center(bounds_.origin_cell[s / kCluster]);
-    arrays_.x[s] = static_cast<T>(used ? (slot_x[s] - origin.x()) / h : -nowhere(s));
-    arrays_.y[s] = static_cast<T>(used ? (slot_y[s] - origin.y()) / h : -nowhere(s));
+    const VecN<Dim> origin = grid.origin_cell_center(bounds_.origin_cell[s / kCluster]);
+    for (std::size_t axis = 0; axis < Dim; ++axis) {
+      const double from = origin[static_cast<Eigen::Index>(axis)];
+      arrays_.position[axis][s] =
+          static_cast<T>(used ? (slot_position[axis][s] - from) / h : -nowhere(s));
+    }
     arrays_.volume[s] = T{1};
   }
   bounds_.resize(layout_);
@@ -53,12 +58,13 @@ DummyParticles<T>::DummyParticles(ThreadTeam& team, const Grid& grid, const Meth
   bounds_.assign_rows(team, layout_);
 }
 
-template <typename T>
-void DummyParticles<T>::sum_pressures(ThreadTeam& team, const Method& method,
-                                      const Sweeps<T>& sweeps, const TermConstants<T>& constants,
-                                      const PairView<T>& fluid, const PairList& list) {
+template <typename T, int Dim>
+void DummyParticles<T, Dim>::sum_pressures(ThreadTeam& team, const MethodN<Dim>& method,
+                                           const Sweeps<T, Dim>& sweeps,
+                                           const TermConstants<T, Dim>& constants,
+                                           const PairView<T, Dim>& fluid, const PairList& list) {
   team.run(list.chunks.size(), [&](std::size_t chunk) {
-    SweepTask<T> task;
+    SweepTask<T, Dim> task;
     task.self = view();
     task.fluid = fluid;
     task.to_fluid = &list.chunks[chunk];
@@ -79,19 +85,20 @@ void DummyParticles<T>::sum_pressures(ThreadTeam& team, const Method& method,
   });
 }
 
-template <typename T>
-void DummyParticles<T>::lift(const std::optional<GateMotion>& gate, double time) {
+template <typename T, int Dim>
+void DummyParticles<T, Dim>::lift(const std::optional<GateMotionN<Dim>>& gate, double time) {
   std::erase_if(lifted_, [&](const GateParticle& p) {
     if (!gate->has_passed(p.place, time)) return false;
-    arrays_.x[p.slot] = arrays_.y[p.slot] = static_cast<T>(-nowhere(p.slot));
+    for (AlignedArray<T>& along : arrays_.position)
+      along[p.slot] = static_cast<T>(-nowhere(p.slot));
     arrays_.excess[p.slot] = arrays_.pressure_term[p.slot] = T{0};
     arrays_.volume[p.slot] = T{1};
     return true;
   });
 }
 
-template <typename T>
-std::vector<double> DummyParticles<T>::pressures(const Method& method) const {
+template <typename T, int Dim>
+std::vector<double> DummyParticles<T, Dim>::pressures(const MethodN<Dim>& method) const {
   std::vector<double> result(count_, 0.0);
   const double scale = method.reference_density * method.sound_speed * method.sound_speed;
   for (std::size_t s = 0; s < layout_.slots(); ++s) {
@@ -100,8 +107,5 @@ std::vector<double> DummyParticles<T>::pressures(const Method& method) const {
   }
   return result;
 }
-
-template class DummyParticles<float>;
-template class DummyParticles<double>;
 
 }  // namespace sluice

@@ -1,0 +1,12 @@
+// The templates of this room for the dimensions that runs have.
+
+#include "engine/sph/pairs/grid-inl.hpp"
+#include "engine/sph/pairs/layout-inl.hpp"
+
+namespace sluice {
+
+template class Grid<2>;
+template Order sort_into_clusters<2>(ThreadTeam&, const Grid<2>&, const AxisSpans<2>&,
+                                     std::span<const double>);
+
+}  // namespace sluice
