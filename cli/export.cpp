@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -62,9 +61,17 @@ std::string csv_text(const Snapshot& frame) {
   }
   text += '\n';
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    text += fmt::format("{},{},{},{},{}\n", frame.time, frame.id[i],
-                        fmt::join(frame.position_of(i), ","), fmt::join(frame.velocity_of(i), ","),
-                        frame.pressure[i]);
+    const Vec place = frame.position_of(i);
+    text += fmt::format("{},{}", frame.time, frame.id[i]);
+    for (const SnapshotField& field : kSnapshotFields) {
+      // Positions in the file are relative to its origin.
+      if (field.unit == "m") {
+        text += fmt::format(",{}", place[field.values.axis()]);
+      } else {
+        text += fmt::format(",{}", field.values.of(frame)[i]);
+      }
+    }
+    text += '\n';
   }
   return text;
 }

@@ -8,6 +8,7 @@
 
 #include "cli/checks.hpp"
 #include "cli/job_data.hpp"
+#include "cli/scene_file.hpp"
 #include "cli/sensors.hpp"
 #include "cli/verbs.hpp"
 #include "engine/store/read/dimensionless.hpp"
@@ -21,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 Divisors divisors_or_end(const JobReader& job, const Series& series) {
   try {
-    return dimensionless_divisors(job.scene(), series);
+    return dimensionless_divisors(job_scene_or_end(job.scene_text(), job.paths().scene()), series);
   } catch (const std::invalid_argument& error) {
     throw CommandEnd(ExitCode::usage, fmt::format("--dimensionless: {}", error.what()));
   }
@@ -101,11 +102,9 @@ void show_sensors(SensorArguments arguments) {
   require_folder(arguments.target);
   const JobReader job = job_or_end(arguments.target);
   const std::vector<Series> all = job.series();
-  if (all.empty()) {
-    throw CommandEnd(
-        ExitCode::usage,
-        fmt::format("{} has no samples yet: its scene has no sensors, or it did not run",
-                    arguments.target));
+  if (all.empty() && !job_scene_or_end(job.scene_text(), job.paths().scene()).sensors.empty()) {
+    throw CommandEnd(ExitCode::usage,
+                     fmt::format("{} has no samples yet: it did not run", arguments.target));
   }
   if (arguments.name.empty()) return list_sensors(all, arguments.format);
   const Series& raw = find_series(all, arguments.name);

@@ -42,7 +42,8 @@ void print_notes(const HttpReply& reply) {
   if (!samples.empty()) note_samples_left_out(static_cast<std::size_t>(lines - 1), all);
   const std::string after(reply.header("sluice-provisional-after"));
   if (!after.empty()) {
-    note(fmt::format("values after {} may still change: the job is running", printable(after)));
+    note(fmt::format("values after {} may still change: the job is not completed",
+                     printable(after)));
   }
 }
 

@@ -174,7 +174,7 @@ void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& 
 }
 
 float coloured_value(const Snapshot& frame, std::size_t i, Quantity quantity) {
-  return quantity == Quantity::pressure ? frame.pressure[i] : frame.velocity_of(i).norm();
+  return quantity == Quantity::pressure ? frame.pressure[i] : frame.velocity_of(i).stableNorm();
 }
 
 const std::array<Rgb, 256>& picture_palette() {

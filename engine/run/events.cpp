@@ -43,7 +43,7 @@ std::optional<Excess> excess_of(const RemovedParticle& removed, const Method& me
   const double ratio = 1.0 + removed.density_excess / method.reference_density;
   switch (removed.cause) {
     case RemovalCause::too_fast:
-      return Excess{"speed (m/s)", removed.velocity.norm(), method.sound_speed};
+      return Excess{"speed (m/s)", removed.velocity.stableNorm(), method.sound_speed};
     case RemovalCause::too_dense:
       return Excess{"density ratio", ratio, 1.0 + Method::kDensityLeeway};
     case RemovalCause::too_thin:

@@ -64,7 +64,7 @@ void JobWriter::write_checkpoint(const Simulation& simulation) {
   checkpoint_step_ = simulation.solver().step_count();
   checkpoint_at_ = end;
   reporter_->event(checkpoint_event(simulation, path, end - start));
-  folder_->prune();
+  for (const std::string& reason : folder_->prune()) reporter_->event(warning_event(reason));
   checkpoint_cost_ = clock_.seconds() - start;
   checkpoint_seconds_ += checkpoint_cost_;
   ++checkpoints_;

@@ -175,7 +175,7 @@ std::string summary_text(const Outcome& outcome) {
                       outcome.leaked.count, outcome.excluded.count);
   if (!outcome.physics_digest.empty()) {
     text += fmt::format("  physics SHA-256 {}{}\n", outcome.physics_digest,
-                        outcome.bit_exact ? "" : " (went on with another build or SIMD target)");
+                        outcome.bit_exact ? "" : " (resumed with another build or SIMD target)");
   }
   return text;
 }

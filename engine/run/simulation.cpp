@@ -26,6 +26,15 @@ Solver resume_solver(const Scene& scene, const Execution& execution, const Solve
   return Solver(scene.method, domain_with_solids(scene), state, scene_walls(scene), execution);
 }
 
+void require_same_run(const Checkpoint& checkpoint, const CheckpointIdentity& identity) {
+  try {
+    require_identity(checkpoint, identity);
+  } catch (const StorageError& error) {
+    throw StorageError(error.fault(), fmt::format("the checkpoint of step {} is {}",
+                                                  checkpoint.solver.step, error.what()));
+  }
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -57,7 +66,7 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
       samples_(std::move(checkpoint.samples)),
       baselines_(checkpoint.guards),
       next_snapshot_(checkpoint.next_snapshot) {
-  require_identity(checkpoint, {scene_hash_, scene_.method.integrator});
+  require_same_run(checkpoint, {scene_hash_, scene_.method.integrator});
   samples_ = in_tables_like(sensors_.empty_tables(), std::move(samples_));
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
                checkpoint.simd_target == solver_.simd_target();

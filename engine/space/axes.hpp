@@ -37,7 +37,7 @@ void append(std::array<std::vector<T>, kAxes>& values, const Vector& vector) {
 }
 
 /// All axes but kUpAxis: a place on the floor.
-inline constexpr std::array<int, kDim - 1> kFloorAxes{0};
+inline constexpr auto kFloorAxes = SpaceTraits<kDim>::floor_axes;
 
 [[nodiscard]] inline bool points_straight_down(const Vec& vector) {
   return vector[kUpAxis] < 0.0 && vector.cwiseAbs().sum() == -vector[kUpAxis];

@@ -32,6 +32,7 @@ struct SpaceTraits;
 template <>
 struct SpaceTraits<2> : CountedTraits<2> {
   static constexpr std::array<std::string_view, 2> axis_names{"x", "y"};
+  static constexpr std::array<int, 1> floor_axes{0};     ///< all but kUpAxis
   static constexpr double unit_ball = std::numbers::pi;  ///< measure of the ball of radius 1
   static constexpr double gaussian_norm = std::numbers::inv_pi;
   static constexpr double pi_times_wendland_c2_norm = 7.0 / 4.0;
@@ -43,6 +44,7 @@ struct SpaceTraits<2> : CountedTraits<2> {
 template <>
 struct SpaceTraits<3> : CountedTraits<3> {
   static constexpr std::array<std::string_view, 3> axis_names{"x", "y", "z"};
+  static constexpr std::array<int, 2> floor_axes{0, 2};
   static constexpr double unit_ball = 4.0 / 3.0 * std::numbers::pi;
   static constexpr double gaussian_norm = std::numbers::inv_pi * std::numbers::inv_sqrtpi;
   static constexpr double pi_times_wendland_c2_norm = 21.0 / 16.0;

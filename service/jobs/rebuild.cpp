@@ -67,12 +67,12 @@ std::optional<Ending> read_ending(const JobPaths& paths, const RebuildReport& re
   } catch (const StorageError& error) {
     if (error.fault() == StorageFault::io) throw;  // it may be whole
     report(paths.root(), fmt::format("outcome.json is none of ours, so the job is taken for one "
-                                     "that resumes: {}",
+                                     "that has not ended: {}",
                                      error.what()));
     return std::nullopt;
   } catch (const std::exception& error) {
     report(paths.root(), fmt::format("outcome.json cannot be read, so the job is taken for one "
-                                     "that resumes: {}",
+                                     "that has not ended: {}",
                                      error.what()));
     return std::nullopt;
   }

@@ -1,5 +1,5 @@
-#include "engine/run/events.hpp"
 #include "engine/run/progress.hpp"
+#include "engine/run/events.hpp"
 
 #include <gtest/gtest.h>
 

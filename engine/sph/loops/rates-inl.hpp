@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <utility>
 
 #include "engine/sph/loops/pair_loop-inl.hpp"
@@ -147,6 +148,7 @@ typename Sweeps<T, Dim>::Sweep select_rates(const MethodN<Dim>& m, TermList<Firs
     }
     (std::make_integer_sequence<int, summation.forms>{});
     if (found != nullptr) return found;
+    if (term) throw std::logic_error("a term has more forms than its Summation says");
   }
   return select_rates<Shape, Rates, T, Dim>(m, TermList<Rest...>{});
 }

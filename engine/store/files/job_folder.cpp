@@ -65,11 +65,10 @@ void make_folder(const fs::path& folder) {
 /// An empty folder, or one in which the making of a job was cut short.
 void require_free_folder(const fs::path& folder) {
   if (JobFolder::holds_job(folder)) {
-    throw StorageError(
-        StorageFault::already_exists,
-        fmt::format("{}: holds a job already; resume it by its folder, or choose "
-                    "another one",
-                    folder.string()));
+    throw StorageError(StorageFault::already_exists,
+                       fmt::format("{}: holds a job already; resume it by its folder, or choose "
+                                   "another one",
+                                   folder.string()));
   }
   const std::vector<fs::path> others =
       sorted_paths(folder, [](std::string_view name) { return name != "lock"; });
@@ -187,8 +186,7 @@ std::optional<Restored> JobFolder::newest_checkpoint(const CheckpointIdentity& i
       if (error.fault() != StorageFault::corrupt && error.fault() != StorageFault::not_ours) {
         throw;
       }
-      put_aside(path);
-      rejected.push_back(told_outside(name(), std::string(error.what())));
+      rejected.push_back(put_aside(path, error));
     }
   }
   const std::vector<fs::path> bad = paths_.bad_checkpoints();
@@ -210,23 +208,18 @@ fs::path JobFolder::write_checkpoint(const Checkpoint& checkpoint) {
   return path;
 }
 
-std::vector<fs::path> JobFolder::prune() {
+std::vector<std::string> JobFolder::prune() {
+  std::vector<std::string> rejected;
   std::vector<fs::path> good = paths_.checkpoints();
-  std::erase_if(good, [this](const fs::path& path) { return !is_verified(path); });
-  if (good.size() <= 3) {
-    return {};
-  }
+  std::erase_if(good, [&](const fs::path& path) { return !is_verified(path, rejected); });
+  if (good.size() <= 3) return rejected;
   const std::vector<fs::path> older(good.begin() + 2, good.end());
   const fs::path& kept = older_to_keep(older, step_of(good.front()));
-  std::vector<fs::path> removed;
   for (const fs::path& path : older) {
     std::error_code ignored;  // One that cannot be removed is only tried again next time
-    if (path != kept && fs::remove(path, ignored)) {
-      verified_.erase(path);
-      removed.push_back(path);
-    }
+    if (path != kept && fs::remove(path, ignored)) verified_.erase(path);
   }
-  return removed;
+  return rejected;
 }
 
 void JobFolder::publish_text(const fs::path& path, std::string_view text) {
@@ -234,24 +227,24 @@ void JobFolder::publish_text(const fs::path& path, std::string_view text) {
   sluice::publish_text(path, text, *system_);
 }
 
-void JobFolder::put_aside(const fs::path& path) {
+std::string JobFolder::put_aside(const fs::path& path, const StorageError& error) {
   const fs::path aside = path.string() + std::string(kBadSuffix);
   verified_.erase(path);
   if (system_->rename(path, aside) != 0) {
     throw system_error("cannot rename this damaged checkpoint", path, errno);
   }
+  return fmt::format("{}; it is kept as {}", told_outside(name(), std::string(error.what())),
+                     aside.filename().string());
 }
 
-bool JobFolder::is_verified(const fs::path& path) {
+bool JobFolder::is_verified(const fs::path& path, std::vector<std::string>& rejected) {
   if (verified_.contains(path)) {
     return true;
   }
   try {
     verify(path);
   } catch (const StorageError& error) {
-    if (error.fault() == StorageFault::corrupt) {
-      put_aside(path);
-    }
+    if (error.fault() == StorageFault::corrupt) rejected.push_back(put_aside(path, error));
     return false;
   }
   verified_.insert(path);

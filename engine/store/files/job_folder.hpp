@@ -67,9 +67,9 @@ class JobFolder {
   std::filesystem::path write_checkpoint(const Checkpoint& checkpoint);
 
   /// Removes checkpoints but for the two newest verified ones and an older one, which lies at half
-  /// of the newest's steps or later where such a one is left. Returns the removed files. One found
-  /// damaged is renamed to `.bad` and does not count.
-  std::vector<std::filesystem::path> prune();
+  /// of the newest's steps or later where such a one is left. One found damaged is renamed to
+  /// `.bad` and does not count; returns a reason for each.
+  [[nodiscard]] std::vector<std::string> prune();
 
   /// Removes what killed processes left, and what failed writes of this one could not remove.
   void remove_leftovers() const;
@@ -79,8 +79,10 @@ class JobFolder {
 
  private:
   JobFolder(JobPaths paths, FileSystem& system);
-  void put_aside(const std::filesystem::path& path);
-  [[nodiscard]] bool is_verified(const std::filesystem::path& path);
+  /// Renames a damaged checkpoint to `.bad`; returns the reason with its new name.
+  [[nodiscard]] std::string put_aside(const std::filesystem::path& path, const StorageError& error);
+  [[nodiscard]] bool is_verified(const std::filesystem::path& path,
+                                 std::vector<std::string>& rejected);
 
   std::filesystem::path name_;
   std::filesystem::path absolute_;  ///< of name_

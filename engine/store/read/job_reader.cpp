@@ -66,6 +66,13 @@ std::vector<Series> JobReader::series() const {
   return {};
 }
 
+JobRecord JobReader::record() const {
+  Scene of_job = scene();
+  std::vector<Series> samples;
+  if (!of_job.sensors.empty()) samples = series();
+  return {std::move(of_job), std::move(samples), outcome()};
+}
+
 bool JobReader::completed() const {
   const auto last = outcome();
   return last.is_object() && last.contains("state") && last["state"] == "completed";

@@ -38,7 +38,8 @@ class JobReader {
   [[nodiscard]] nlohmann::ordered_json outcome() const { return read_outcome(paths_.root()); }
   /// Whether the last attempt reached the end time: filtered values are then final.
   [[nodiscard]] bool completed() const;
-  [[nodiscard]] JobRecord record() const { return {scene(), series(), outcome()}; }
+  /// Without a look at files of samples where the scene has no sensors.
+  [[nodiscard]] JobRecord record() const;
 
  private:
   JobPaths paths_;

@@ -44,6 +44,13 @@ TEST(TermList, HasDefaultsThatScenesMayWrite) {
   });
 }
 
+TEST(TermList, HasASummandForEachFormOfATerm) {
+  for_each_term(RateTerms{}, [&]<class Term>() {
+    EXPECT_LT(form_of(Term{}), Term::kSummation.forms) << Term::kText.key;
+  });
+  EXPECT_LT(form_of(ArtificialViscosity{.beta = 1.0}), ArtificialViscosity::kSummation.forms);
+}
+
 TEST(TermList, IsTheMembersOfAMethod) {
   Method m;
   for_each_term(AllTerms{}, [&]<class Term>() { EXPECT_FALSE(m.term<Term>()) << "left out"; });

@@ -76,6 +76,18 @@ TEST_F(JobReaderTest, NamesTheFirstProblemOfAScene) {
   EXPECT_THROW((void)reader_.scene(), SceneError);
 }
 
+TEST(JobReader, LooksAtNoSamplesWhereTheSceneHasNoSensors) {
+  const TemporaryFolder folder;
+  const JobFolder job = JobFolder::create(folder / "job", R"({
+    "name": "wet", "tank": {"width": 1, "height": 1}, "gravity": [0, -9.81], "end_time": 1,
+    "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [0.5, 0.5]}],
+    "material": {"density": 1000}, "resolution": {"spacing": 0.05}})");
+  std::ofstream(job.paths().series()) << "no series of ours";
+  const JobRecord record = JobReader(folder / "job").record();
+  EXPECT_EQ(record.scene.name, "wet");
+  EXPECT_TRUE(record.series.empty());
+}
+
 TEST(JobReader, OfAFolderWithoutAJobSaysSo) {
   const TemporaryFolder folder;
   expect_fault(StorageFault::not_ours, [&] { const JobReader reader(folder.path()); });
