@@ -20,9 +20,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Scene scene_or_end(const JobReader& job) {
+  return job_scene_or_end(job.scene_text(), job.paths().scene());
+}
+
 Divisors divisors_or_end(const JobReader& job, const Series& series) {
   try {
-    return dimensionless_divisors(job_scene_or_end(job.scene_text(), job.paths().scene()), series);
+    return dimensionless_divisors(scene_or_end(job), series);
   } catch (const std::invalid_argument& error) {
     throw CommandEnd(ExitCode::usage, fmt::format("--dimensionless: {}", error.what()));
   }
@@ -102,7 +106,7 @@ void show_sensors(SensorArguments arguments) {
   require_folder(arguments.target);
   const JobReader job = job_or_end(arguments.target);
   const std::vector<Series> all = job.series();
-  if (all.empty() && !job_scene_or_end(job.scene_text(), job.paths().scene()).sensors.empty()) {
+  if (all.empty() && !scene_or_end(job).sensors.empty()) {
     throw CommandEnd(ExitCode::usage,
                      fmt::format("{} has no samples yet: it did not run", arguments.target));
   }

@@ -39,7 +39,8 @@ StudyRow read_row(const std::filesystem::path& folder, const StudyRun& run) {
       row.reason = "the study has changed since this run";
     }
     if (row.state != RunState::completed) return row;
-    return row_of_report(report_json(make_report(job.scene(), job.series(), outcome)));
+    const JobRecord record = job.record();
+    return row_of_report(report_json(make_report(record.scene, record.series, record.outcome)));
   } catch (const std::exception& error) {
     row.state = RunState::stopped;
     row.reason = error.what();
