@@ -56,14 +56,15 @@ std::string unit_word(std::string_view unit) {
 
 std::string csv_text(const Snapshot& frame) {
   std::string text = "time_s,id";
-  for (const SnapshotField& field : kSnapshotFields) {
+  const auto fields = snapshot_fields_in(frame.position.size());
+  for (const SnapshotField& field : fields) {
     text += fmt::format(",{}_{}", field.name, unit_word(field.unit));
   }
   text += '\n';
   for (std::size_t i = 0; i < frame.size(); ++i) {
     const Vec place = frame.position_of(i);
     text += fmt::format("{},{}", frame.time, frame.id[i]);
-    for (const SnapshotField& field : kSnapshotFields) {
+    for (const SnapshotField& field : fields) {
       // Positions in the file are relative to its origin.
       if (field.unit == "m") {
         text += fmt::format(",{}", place[field.values.axis()]);

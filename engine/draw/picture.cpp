@@ -48,7 +48,7 @@ std::uint8_t index_of(double value, const PictureView& how) {
 double pixels_per_metre(const PictureView& how) { return how.width / how.view.size().x(); }
 
 /// The middle of a pixel, m.
-Vec place_of(int column, int row, const PictureView& how) {
+Vec2 place_of(int column, int row, const PictureView& how) {
   const double scale = pixels_per_metre(how);
   return {how.view.min.x() + (column + 0.5) / scale, how.view.max.y() - (row + 0.5) / scale};
 }
@@ -63,7 +63,7 @@ class Canvas {
         picture_(picture),
         nearest_(picture.pixels.size(), std::numeric_limits<float>::infinity()) {}
 
-  void disc(const Vec& place, std::uint8_t index) {
+  void disc(const Vec2& place, std::uint8_t index) {
     // Small particles still mark the pixel that they lie in.
     const double reach = std::max(radius_ * scale_, 0.71);
     const double column = (place.x() - view_.min.x()) * scale_ - 0.5;
@@ -90,7 +90,7 @@ class Canvas {
   }
 
   double scale_;  ///< pixels per metre
-  Box view_;
+  Box2 view_;
   double radius_;
   Picture& picture_;
   std::vector<float> nearest_;
@@ -98,7 +98,7 @@ class Canvas {
 
 /// Fills the pixels whose middle `holds`, within the rows and columns of `box`.
 template <class Holds>
-void fill(Picture& picture, const PictureView& how, const Box& box, std::uint8_t index,
+void fill(Picture& picture, const PictureView& how, const Box2& box, std::uint8_t index,
           const Holds& holds) {
   const double scale = pixels_per_metre(how);
   const auto bounded = [](double at, int size) {
@@ -115,6 +115,12 @@ void fill(Picture& picture, const PictureView& how, const Box& box, std::uint8_t
                      static_cast<std::size_t>(column)] = index;
     }
   }
+}
+
+/// A place of the picture in the scene.
+Vec in_section(const Vec2& place, const Scene& scene, const PictureView& how) {
+  if (scene.dimensions() == 2) return place;
+  return Vec3(place.x(), place.y(), how.section);
 }
 
 std::array<Rgb, 256> make_palette() {
@@ -145,14 +151,15 @@ Picture blank_picture(const PictureView& how) {
 Picture draw_solids(const Scene& scene, const PictureView& how) {
   Picture picture = blank_picture(how);
   if (const auto& tank = scene.tank) {
-    fill(picture, how, how.view, kSolid, [&](const Vec& p) {
+    fill(picture, how, how.view, kSolid, [&](const Vec2& p) {
       if (p.y() > tank->height) return !tank->open_top;
       return p.y() < 0.0 || p.x() < 0.0 || p.x() > tank->width;
     });
   }
   for (const Shape& obstacle : scene.obstacles) {
-    fill(picture, how, bounds(obstacle), kSolid,
-         [&](const Vec& p) { return contains(obstacle, p); });
+    const Box whole = bounds(obstacle);
+    fill(picture, how, Box2{whole.min.head<2>(), whole.max.head<2>()}, kSolid,
+         [&](const Vec2& p) { return contains(obstacle, in_section(p, scene, how)); });
   }
   return picture;
 }
@@ -162,14 +169,16 @@ void draw_gate(Picture& picture, const Scene& scene, const PictureView& how, dou
   const double edge = scene.gate->speed * time;
   if (!(edge < scene.gate->height)) return;
   const double thickness = std::max(scene.method.support(), 2.0 / pixels_per_metre(how));
-  const Box box{Vec(scene.gate->x, edge), Vec(scene.gate->x + thickness, scene.gate->height)};
-  fill(picture, how, box, kGate, [&](const Vec& p) { return box.contains(p); });
+  const Box2 box{Vec2(scene.gate->x, edge), Vec2(scene.gate->x + thickness, scene.gate->height)};
+  fill(picture, how, box, kGate, [&](const Vec2& p) { return box.contains(p); });
 }
 
 void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& how) {
   Canvas canvas(picture, how);
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    canvas.disc(frame.position_of(i), index_of(coloured_value(frame, i, how.quantity), how));
+    const Vec place = frame.position_of(i);
+    const bool cut = place.size() == 2 || std::abs(place[2] - how.section) <= 0.5 * how.diameter;
+    if (cut) canvas.disc(place.head<2>(), index_of(coloured_value(frame, i, how.quantity), how));
   }
 }
 

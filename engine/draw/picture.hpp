@@ -13,9 +13,10 @@ namespace sluice {
 /// What gives a particle its colour.
 enum class Quantity { pressure, speed };
 
-/// What a picture shows and how values become colours.
+/// What a picture shows and how values become colours. It looks along z, towards lower z.
 struct PictureView {
-  Box view;               ///< m
+  Box2 view;              ///< of x and y, m
+  double section = 0.0;   ///< in space: the z at which a scene is cut, m
   double diameter = 0.0;  ///< of a particle, m
   double low = 0.0;       ///< Pa or m/s that has the first colour, and everything below
   double high = 1.0;      ///< Pa or m/s that has the last colour, and everything above
@@ -44,7 +45,8 @@ struct Picture {
 /// What is left of the gate at `time` (s): above its lower edge.
 void draw_gate(Picture& picture, const Scene& scene, const PictureView& how, double time);
 
-/// Each particle as a disc over what is there; where discs overlap, the nearest particle counts.
+/// Each particle as a disc over what is there; where discs overlap, the nearest particle counts. In
+/// space those whose middle is within half a diameter of the section.
 /// Particles out of view or not finite are left out. `picture` has the size of `how`.
 void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& how);
 

@@ -22,14 +22,14 @@ constexpr int kLeast = 480;     ///< pixels in which the strip has room
 constexpr int kLength = 12000;  ///< ms
 
 /// The particles' box over all snapshots, where the scene has no tank that tells the view.
-std::optional<Box> moving_box(const std::vector<fs::path>& files) {
-  std::optional<Box> box;
+std::optional<Box2> moving_box(const std::vector<fs::path>& files) {
+  std::optional<Box2> box;
   for (const fs::path& path : files) {
     const auto frame = try_snapshot(path);
     if (!frame) continue;
     const auto one = particle_box({&*frame, 1});
     if (!one) continue;
-    box = box ? Box{box->min.cwiseMin(one->min), box->max.cwiseMax(one->max)} : *one;
+    box = box ? Box2{box->min.cwiseMin(one->min), box->max.cwiseMax(one->max)} : *one;
   }
   return box;
 }
@@ -79,11 +79,12 @@ std::string animation_png(const fs::path& folder, const Report& report, Quantity
   if (files.empty()) return {};
   PictureView how;
   how.view = picture_view(scene, scene.tank ? std::nullopt : moving_box(files));
+  how.section = picture_section(scene);
   how.diameter = scene.method.spacing;
   how.quantity = quantity;
   // The colours of the report's pictures.
   how.high = colour_end(picture_snapshots(folder, report), quantity);
-  const Vec size = how.view.size();
+  const Vec2 size = how.view.size();
   how.width =
       std::clamp(static_cast<int>(kAnimationHeight * size.x() / size.y()), 16, kAnimationWidth);
   const Picture solids = draw_solids(scene, how);

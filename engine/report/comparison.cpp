@@ -33,9 +33,10 @@ const Series* series_of(const std::vector<Series>& all, const Sensor& sensor) {
 /// The first sensor of a kind near a place of the experiment, given in its own metres; a height is
 /// measured over the whole of its line. Places are the same within 0.02 h0, heights 0.01 h0.
 const Sensor* sensor_at(const Scene& scene, const Reference& reference, SensorKind kind,
-                        const Vec& place) {
+                        const Vec2& place) {
   for (const Sensor& sensor : scene.sensors) {
-    Vec apart = sensor.position / scene.scales->height - place / reference.height;
+    // Across the tank the experiment is taken for the same everywhere.
+    Vec2 apart = sensor.position.head<2>() / scene.scales->height - place / reference.height;
     apart[kUpAxis] *= kind == SensorKind::surface_height ? 0.0 : 2.0;
     if (sensor.kind == kind && apart.cwiseAbs().maxCoeff() <= 0.02) return &sensor;
   }

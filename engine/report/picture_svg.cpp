@@ -37,9 +37,9 @@ Axis axis_of(std::string_view name, double low, double high) {
 }
 
 /// The plot of a view, to scale.
-PlotArea plot_of(const Box& view) {
+PlotArea plot_of(const Box2& view) {
   constexpr double kTallest = 420.0;
-  const Vec size = view.size();
+  const Vec2 size = view.size();
   const double scale = std::min((kWidth - kLeft - kRight) / size.x(), kTallest / size.y());
   return {.x_axis = axis_of("x", view.min.x(), view.max.x()),
           .y_axis = axis_of("y", view.min.y(), view.max.y()),
@@ -95,6 +95,7 @@ std::vector<std::string> picture_svgs(const Report& report, const std::vector<Sn
   PictureView how;
   how.view = picture_view(scene, particle_box(frames));
   const PlotArea plot = plot_of(how.view);
+  how.section = picture_section(scene);
   how.diameter = scene.method.spacing;
   how.high = colour_end(frames, how.quantity);
   how.width = std::clamp(static_cast<int>(1.5 * plot.width), 64, 1000);

@@ -56,7 +56,7 @@ std::vector<PressureReference> read_pressures(const json& file, std::size_t coun
 /// Mean over the tests, whose columns are named SENSOR_TEST.
 LevelReference read_level(const json& levels, const std::string& name, double x,
                           std::size_t count) {
-  LevelReference level{name, Vec(x, 0.0), std::vector<double>(count, 0.0)};
+  LevelReference level{name, Vec2(x, 0.0), std::vector<double>(count, 0.0)};
   double tests = 0.0;
   for (const auto& [column, values] : levels.items()) {
     if (!column.starts_with(name + "_")) continue;

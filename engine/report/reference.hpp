@@ -26,7 +26,7 @@ struct PressureBand {
 /// A pressure sensor of an experiment on the wall that the surge hits.
 struct PressureReference {
   std::string name;
-  Vec place = Vec::Zero();     ///< from the lower corner of the tank that the column stands in, m
+  Vec2 place = Vec2::Zero();   ///< from the lower corner of the tank that the column stands in, m
   double arrival = 0.0;        ///< T
   std::vector<double> values;  ///< P, one average per interval
   PeakStatistics peak;
@@ -36,7 +36,7 @@ struct PressureReference {
 /// A place where the surface was measured.
 struct LevelReference {
   std::string name;
-  Vec place = Vec::Zero();     ///< on the floor, from that corner, m
+  Vec2 place = Vec2::Zero();   ///< on the floor, from that corner, m
   std::vector<double> values;  ///< h/h0, mean over the tests, one average per interval
 };
 

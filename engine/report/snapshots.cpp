@@ -38,7 +38,7 @@ std::uint64_t index_in(const fs::path& path) {
   return index;
 }
 
-void add_box(std::optional<Box>& to, const Box& box) {
+void add_box(std::optional<Box2>& to, const Box2& box) {
   if (!to) {
     to = box;
     return;
@@ -99,38 +99,44 @@ std::optional<Snapshot> try_snapshot(const fs::path& path) {
   }
 }
 
-std::optional<Box> particle_box(std::span<const Snapshot> frames) {
-  std::optional<Box> box;
+std::optional<Box2> particle_box(std::span<const Snapshot> frames) {
+  std::optional<Box2> box;
   for (const Snapshot& frame : frames) {
     for (std::size_t i = 0; i < frame.size(); ++i) {
-      const Vec place = frame.position_of(i);
+      const Vec2 place = frame.position_of(i).head<2>();
       if (place.allFinite()) add_box(box, {place, place});
     }
   }
   return box;
 }
 
-Box picture_view(const Scene& scene, const std::optional<Box>& particles) {
+Box2 picture_view(const Scene& scene, const std::optional<Box2>& particles) {
   if (scene.tank) {
-    const Vec size(scene.tank->width, scene.tank->height);
+    const Vec2 size(scene.tank->width, scene.tank->height);
     const double wall = std::max(scene.method.support(), 0.008 * size.maxCoeff());
     const double above = scene.tank->open_top ? 0.0 : wall;
-    return {Vec(-wall, -wall), size + Vec(wall, above)};
+    return {Vec2(-wall, -wall), size + Vec2(wall, above)};
   }
-  std::optional<Box> box = particles;
+  std::optional<Box2> box = particles;
   if (box) {
     // Of ground that goes on for ever as much as lies about the fluid.
-    const Vec around = Vec::Constant(box->size().maxCoeff());
-    const Box near{box->min - around, box->max + around};
+    const Vec2 around = Vec2::Constant(box->size().maxCoeff());
+    const Box2 near{box->min - around, box->max + around};
     for (const Shape& obstacle : scene.obstacles) {
       const Box whole = bounds(obstacle);
-      const Box part{whole.min.cwiseMax(near.min), whole.max.cwiseMin(near.max)};
+      const Box2 part{whole.min.head<2>().cwiseMax(near.min),
+                      whole.max.head<2>().cwiseMin(near.max)};
       if ((part.min.array() <= part.max.array()).all()) add_box(box, part);
     }
   }
-  if (!box) return {Vec::Zero(), Vec::Ones()};
-  const Vec margin = Vec::Constant(std::max(scene.method.spacing, 0.03 * box->size().maxCoeff()));
+  if (!box) return {Vec2::Zero(), Vec2::Ones()};
+  const Vec2 margin = Vec2::Constant(std::max(scene.method.spacing, 0.03 * box->size().maxCoeff()));
   return {box->min - margin, box->max + margin};
+}
+
+double picture_section(const Scene& scene) {
+  if (scene.dimensions() == 2) return 0.0;
+  return (scene.tank ? scene.tank->interior() : bounds(scene.fluid.front().shape)).middle()[2];
 }
 
 double colour_end(const std::vector<Snapshot>& frames, Quantity quantity) {

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 Json started_fields(const Simulation& simulation, const JobFolder& folder) {
   const Solver& solver = simulation.solver();
   // A few may be gone before the first step: they have started as well.
-  const std::size_t gone = solver.step_count() == 0 ? solver.removed().size() : 0;
+  const std::size_t gone = solver.step_count() == 0 ? solver.removed_count() : 0;
   return Json{{"scene", simulation.scene().name},
               {"folder", folder.name().string()},
               {"step", solver.step_count()},

@@ -7,12 +7,14 @@
 namespace sluice {
 
 RemovalNews::RemovalNews(const Simulation& simulation)
-    : seen_(simulation.solver().removed().size()),
+    : seen_(simulation.solver().removed_count()),
       removed_{simulation.leaked(), simulation.excluded()} {}
 
 void RemovalNews::tell(const Simulation& simulation, Reporter& reporter) {
-  const std::vector<RemovedParticle>& all = simulation.solver().removed();
-  for (; seen_ < all.size(); ++seen_) count(all[seen_], simulation.scene().method, reporter);
+  const Solver& solver = simulation.solver();
+  for (; seen_ < solver.removed_count(); ++seen_) {
+    count(solver.removed(seen_), simulation.scene().method, reporter);
+  }
 }
 
 void RemovalNews::count(const RemovedParticle& removed, const Method& method, Reporter& reporter) {

@@ -69,7 +69,7 @@ class FacePressureSampler final : public PressureSampler {
 Vec clear_of_walls(Vec place, const Scene& scene) {
   if (!scene.tank) return place;
   const Box interior = scene.tank->interior();
-  for (const int axis : kFloorAxes) {
+  for (const int axis : floor_axes(scene.dimensions())) {
     const double length = interior.size()[axis];
     const double margin = std::min(0.5 * scene.method.support(), 0.5 * length);
     place[axis] = std::clamp(place[axis], margin, length - margin);
@@ -108,12 +108,13 @@ class SurgeFrontSampler final : public Sampler {
   double end_;
 };
 
-/// Kinetic, potential and internal energy of the fluid, J per metre of depth.
+/// Kinetic, potential and internal energy of the fluid, J, in the plane per metre of depth.
 class EnergySampler final : public Sampler {
  public:
+  explicit EnergySampler(int dimensions) : unit_(energy_unit(dimensions)) {}
   bool uses_all_threads() const override { return true; }
   std::vector<Series::Column> columns() const override {
-    return {{"kinetic", "J/m"}, {"potential", "J/m"}, {"internal", "J/m"}};
+    return {{"kinetic", unit_}, {"potential", unit_}, {"internal", unit_}};
   }
   double sample(const Solver& solver, std::span<double> values) const override {
     const Energy energy = solver.energy();
@@ -122,6 +123,9 @@ class EnergySampler final : public Sampler {
     values[2] = energy.internal;
     return 1.0;
   }
+
+ private:
+  std::string unit_;
 };
 
 /// The time, s, at which fluid is first seen within 1.5 spacings of a point: one particle diameter
@@ -179,7 +183,7 @@ std::unique_ptr<Sampler> make_sampler(const Sensor& sensor, const Scene& scene) 
     case SensorKind::surge_front:
       return std::make_unique<SurgeFrontSampler>(scene);
     case SensorKind::energy:
-      return std::make_unique<EnergySampler>();
+      return std::make_unique<EnergySampler>(scene.dimensions());
     case SensorKind::arrival:
       return std::make_unique<ArrivalSampler>(sensor.position, method.spacing);
   }

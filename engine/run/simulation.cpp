@@ -136,9 +136,11 @@ void Simulation::snapshot_written() {
 std::vector<Diagnosis> Simulation::take_warnings() { return std::exchange(warnings_, {}); }
 
 void Simulation::count_removed() {
-  const std::vector<RemovedParticle>& removed = solver_.removed();
-  for (; removed_counted_ < removed.size(); ++removed_counted_) {
-    const RemovedParticle& one = removed[removed_counted_];
+  for (Departed& kind : departed_) {
+    if (kind.count == 0) kind.momentum = filled_vec<kAnyDim>(0.0, scene_.dimensions());
+  }
+  for (; removed_counted_ < solver_.removed_count(); ++removed_counted_) {
+    const RemovedParticle one = solver_.removed(removed_counted_);
     departed_[static_cast<std::size_t>(one.cause)].add(scene_.method, one);
     if (is_exclusion(one.cause)) excluded_at_.push_back(one.time);
     energy_that_left_ += energy_that_left(scene_.method, one);

@@ -15,8 +15,8 @@ constexpr std::size_t kMostDots = 1500;
 std::vector<Dot> picture_of(const Checkpoint& state) {
   const Particles& p = state.solver.particles;
   if (p.size() == 0) return {};
-  Vec low = p.position_of(0);
-  Vec high = low;
+  Vec2 low = p.position_of(0);
+  Vec2 high = low;
   double fastest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     low = low.cwiseMin(p.position_of(i));
@@ -27,7 +27,7 @@ std::vector<Dot> picture_of(const Checkpoint& state) {
   const std::size_t stride = (p.size() + kMostDots - 1) / kMostDots;
   std::vector<Dot> dots;
   for (std::size_t i = 0; i < p.size(); i += stride) {
-    const Vec at = (p.position_of(i) - low) / size;
+    const Vec2 at = (p.position_of(i) - low) / size;
     const double speed = std::hypot(p.velocity[0][i], p.velocity[1][i]);
     dots.push_back({at.x(), at.y(), fastest > 0.0 ? speed / fastest : 0.0});
   }

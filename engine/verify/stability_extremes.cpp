@@ -73,51 +73,51 @@ CaseResult tank_1km(CaseRunner& b) { return end_of(b, dam_break("tank-1km", 250,
 /// Falls on a film of 1 mm: many depths of flow over few particles.
 CaseResult film_1mm(CaseRunner& b) {
   const double dx = b.pick(2.5e-4, 1e-4);
-  const Json fluid = Json::array({rectangle(Vec::Zero(), Vec(0.05, 0.001))});
-  return end_of(b, tank_scene("film-1mm", Vec(0.05, 0.01), fluid, dx,
+  const Json fluid = Json::array({rectangle(Vec2::Zero(), Vec2(0.05, 0.001))});
+  return end_of(b, tank_scene("film-1mm", Vec2(0.05, 0.01), fluid, dx,
                               14.2 * std::sqrt(kGravity * 0.001), b.pick(0.3, 2.0)));
 }
 
 CaseResult jet_in_corner(CaseRunner& b) {
-  Json jet = rectangle(Vec(0.2, 0.0), Vec(0.5, 0.1));
+  Json jet = rectangle(Vec2(0.2, 0.0), Vec2(0.5, 0.1));
   jet["velocity"] = {1.0, 0.0};
   jet["pressure"] = "zero";
-  return end_of(b, tank_scene("jet-corner", Vec(1.0, 1.0), Json::array({jet}), 0.1 / b.pick(8, 30),
+  return end_of(b, tank_scene("jet-corner", Vec2(1.0, 1.0), Json::array({jet}), 0.1 / b.pick(8, 30),
                               20.0, 0.8));
 }
 
 CaseResult drop_on_film(CaseRunner& b) {
-  Json drop = circle(Vec(0.5, 0.3), 0.1);
+  Json drop = circle(Vec2(0.5, 0.3), 0.1);
   drop["velocity"] = {0.0, -1.0};
-  const Json fluid = Json::array({rectangle(Vec::Zero(), Vec(1.0, 0.05)), drop});
-  return end_of(b,
-                tank_scene("drop-on-film", Vec(1.0, 0.8), fluid, b.pick(0.0125, 0.005), 25.0, 0.6));
+  const Json fluid = Json::array({rectangle(Vec2::Zero(), Vec2(1.0, 0.05)), drop});
+  return end_of(
+      b, tank_scene("drop-on-film", Vec2(1.0, 0.8), fluid, b.pick(0.0125, 0.005), 25.0, 0.6));
 }
 
 CaseResult column_on_obstacle(CaseRunner& b) {
   Json scene = dam_break("column-obstacle", 0.4, 0.4, b.pick(14, 60), 6);
-  scene["obstacles"] = Json::array({rectangle(Vec(0.8, 0.0), Vec(0.1, 0.1))});
+  scene["obstacles"] = Json::array({rectangle(Vec2(0.8, 0.0), Vec2(0.1, 0.1))});
   return end_of(b, scene);
 }
 
 CaseResult colliding_columns(CaseRunner& b) {
-  const Json fluid =
-      Json::array({rectangle(Vec::Zero(), Vec(0.3, 0.3)), rectangle(Vec(0.9, 0.0), Vec(0.3, 0.3))});
+  const Json fluid = Json::array(
+      {rectangle(Vec2::Zero(), Vec2(0.3, 0.3)), rectangle(Vec2(0.9, 0.0), Vec2(0.3, 0.3))});
   return end_of(
-      b, tank_scene("colliding-columns", Vec(1.2, 0.9), fluid, 0.3 / b.pick(14, 60), 25.0, 1.0));
+      b, tank_scene("colliding-columns", Vec2(1.2, 0.9), fluid, 0.3 / b.pick(14, 60), 25.0, 1.0));
 }
 
 /// A block that hangs over nothing: its hydrostatic pressure has no floor to rest on.
 CaseResult overhang(CaseRunner& b) {
-  const Json fluid =
-      Json::array({rectangle(Vec::Zero(), Vec(0.2, 0.4)), rectangle(Vec(0.2, 0.2), Vec(0.3, 0.2))});
-  return end_of(b, tank_scene("overhang", Vec(1.0, 0.8), fluid, 0.2 / b.pick(10, 40), 30.0, 0.8));
+  const Json fluid = Json::array(
+      {rectangle(Vec2::Zero(), Vec2(0.2, 0.4)), rectangle(Vec2(0.2, 0.2), Vec2(0.3, 0.2))});
+  return end_of(b, tank_scene("overhang", Vec2(1.0, 0.8), fluid, 0.2 / b.pick(10, 40), 30.0, 0.8));
 }
 
 CaseResult odd_spacing(CaseRunner& b) {
-  const Json fluid = Json::array({rectangle(Vec::Zero(), Vec(0.3719, 0.2417))});
+  const Json fluid = Json::array({rectangle(Vec2::Zero(), Vec2(0.3719, 0.2417))});
   return end_of(
-      b, tank_scene("odd-spacing", Vec(1.1234, 0.6), fluid, b.pick(0.0231, 0.00731), 22.0, 1.0));
+      b, tank_scene("odd-spacing", Vec2(1.1234, 0.6), fluid, b.pick(0.0231, 0.00731), 22.0, 1.0));
 }
 
 /// Why the paper's scheme loses the upper corner of a column that falls along a wall.

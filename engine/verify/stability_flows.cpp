@@ -36,7 +36,7 @@ double closest_pair(const Particles& p) {
 
 CaseResult rotating_patch(CaseRunner& bench) {
   const double dx = 1.0 / bench.pick(20, 50);
-  Json patch = rectangle(Vec(-0.5, -0.5), Vec(1, 1));
+  Json patch = rectangle(Vec2(-0.5, -0.5), Vec2(1, 1));
   patch["rotation_rate"] = -1.0;
   const CaseRun run =
       bench.run(in_space("rotating-patch", std::move(patch), dx, 7.0, bench.pick(1.0, 2.0)));
@@ -85,7 +85,7 @@ CaseResult standing_wave(CaseRunner& bench) {
     const double x = 0.02 * i;
     points.push_back({x, 1.0 + kAmplitude * std::cos(k * x)});
   }
-  Json scene = tank_scene("standing-wave", Vec(2.0, 1.5), Json::array({Json::object()}),
+  Json scene = tank_scene("standing-wave", Vec2(2.0, 1.5), Json::array({Json::object()}),
                           1.0 / bench.pick(20, 40), 10 * std::sqrt(2 * kGravity),
                           4 * 2 * std::numbers::pi / omega);
   scene["fluid"][0] = {{"shape", "polygon"}, {"points", points}};
@@ -102,10 +102,10 @@ CaseResult standing_wave(CaseRunner& bench) {
 CaseResult droplet_at(CaseRunner& bench, double mach, Verdict expected) {
   constexpr double kDropSound = 20.0;
   const double dx = 0.1 / bench.pick(15, 40);
-  Json drop = circle(Vec(1.5, 0.12), 0.1);
+  Json drop = circle(Vec2(1.5, 0.12), 0.1);
   drop["velocity"] = {0.0, -mach * kDropSound};
   return result_of(
-      bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec(3.0, 0.5),
+      bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec2(3.0, 0.5),
                            Json::array({drop}), dx, kDropSound, 0.2 / (mach * kDropSound))),
       expected);
 }
@@ -146,7 +146,7 @@ CaseResult overlapping_regions(CaseRunner& bench) {
 }
 
 CaseResult free_fall(CaseRunner& bench) {
-  Json scene = in_space("free-fall", rectangle(Vec::Zero(), Vec(0.01, 0.01)), 0.01, 50.0, 1.0);
+  Json scene = in_space("free-fall", rectangle(Vec2::Zero(), Vec2(0.01, 0.01)), 0.01, 50.0, 1.0);
   scene["gravity"] = {0.0, -kGravity};
   scene["fluid"][0]["velocity"] = {1.0, 2.0};
   const CaseRun run = bench.run(scene);
@@ -154,7 +154,7 @@ CaseResult free_fall(CaseRunner& bench) {
   if (!run.completed()) return result;
   const SolverState& end = run.last->solver;
   const double t = end.time;
-  const Vec exact = Vec(0.005, 0.005) + Vec(t, 2 * t - 0.5 * kGravity * t * t);
+  const Vec2 exact = Vec2(0.005, 0.005) + Vec2(t, 2 * t - 0.5 * kGravity * t * t);
   result.figures.push_back(
       {"place over path", (end.particles.position_of(0) - exact).norm() / exact.norm(), 1e-12});
   return result;

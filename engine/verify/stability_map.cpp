@@ -131,8 +131,8 @@ NoiseGrowth measure_noise(const Method& method, int most_steps, double displacem
   Method m = method;
   const double far = 10.0 * kSide * m.spacing;
   FlowDomain domain;
-  domain.box = {Vec::Constant(-far), Vec::Constant(far)};
-  m.gravity = Vec::Zero();
+  domain.box = {Vec2::Constant(-far), Vec2::Constant(far)};
+  m.gravity.setZero();
   Solver solver(m, domain, noisy_patch(m, displacement), {}, {});
   const double start = solver.extremes().max_speed;
   NoiseGrowth growth;

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kProbeDepths{0.25, 0.5, 0.75};
 
-Json pair(const Vec& vec) { return Json::array({vec.x(), vec.y()}); }
+Json pair(const Vec2& vec) { return Json::array({vec.x(), vec.y()}); }
 
 std::string probe_name(std::size_t index) { return "p" + std::to_string(index); }
 
@@ -51,15 +51,15 @@ Json with_scheme(Json scene, const Json& scheme) {
   return scene;
 }
 
-Json rectangle(Vec corner, Vec size) {
+Json rectangle(Vec2 corner, Vec2 size) {
   return {{"shape", "rectangle"}, {"corner", pair(corner)}, {"size", pair(size)}};
 }
 
-Json circle(Vec center, double radius) {
+Json circle(Vec2 center, double radius) {
   return {{"shape", "circle"}, {"center", pair(center)}, {"radius", radius}, {"pressure", "zero"}};
 }
 
-Json tank_scene(std::string_view name, Vec size, Json fluid, double spacing, double sound,
+Json tank_scene(std::string_view name, Vec2 size, Json fluid, double spacing, double sound,
                 double end_time) {
   return {{"name", name},
           {"tank", {{"width", size.x()}, {"height", size.y()}}},
@@ -84,14 +84,14 @@ Json in_space(std::string_view name, Json shape, double spacing, double sound, d
 Json still_water(std::string_view name, const StillWater& w) {
   const double wave = std::sqrt(w.gravity * w.depth);
   const double end = w.time * w.depth / wave;
-  const Vec size = w.depth * Vec(w.width, 1.0);
-  Json scene = tank_scene(name, size.cwiseProduct(Vec(1.0, 1.3)),
-                          Json::array({rectangle(Vec::Zero(), size)}), w.depth / w.per_depth,
+  const Vec2 size = w.depth * Vec2(w.width, 1.0);
+  Json scene = tank_scene(name, size.cwiseProduct(Vec2(1.0, 1.3)),
+                          Json::array({rectangle(Vec2::Zero(), size)}), w.depth / w.per_depth,
                           w.sound_ratio * wave, end);
   scene["gravity"] = {0.0, -w.gravity};
   scene["material"]["density"] = w.density;
   for (std::size_t i = 0; i < kProbeDepths.size(); ++i) {
-    const Vec place(0.5 * size.x(), w.depth * (1.0 - kProbeDepths[i]));
+    const Vec2 place(0.5 * size.x(), w.depth * (1.0 - kProbeDepths[i]));
     scene["sensors"].push_back({{"name", probe_name(i)},
                                 {"kind", "pressure"},
                                 {"position", pair(place)},
@@ -123,9 +123,9 @@ Json dam_break(std::string_view name, double width, double height, double per_le
                double end_in_root_h_over_g) {
   const double spacing = std::min(width, height) / per_length;
   const double sound = 10 * std::sqrt(2 * kGravity * height);
-  const Vec tank(std::max(4 * width, 2 * height), 2 * height);
-  return tank_scene(name, tank, Json::array({rectangle(Vec::Zero(), Vec(width, height))}), spacing,
-                    sound, end_in_root_h_over_g * std::sqrt(height / kGravity));
+  const Vec2 tank(std::max(4 * width, 2 * height), 2 * height);
+  return tank_scene(name, tank, Json::array({rectangle(Vec2::Zero(), Vec2(width, height))}),
+                    spacing, sound, end_in_root_h_over_g * std::sqrt(height / kGravity));
 }
 
 }  // namespace sluice

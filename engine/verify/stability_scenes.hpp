@@ -43,14 +43,14 @@ struct StillWater {
 [[nodiscard]] double pressure_error(const CaseRun& run, const StillWater& water, double from);
 
 /// A tank with an open top and the given fluid; lengths in m, gravity 9.81, sound speed `sound`.
-[[nodiscard]] nlohmann::ordered_json tank_scene(std::string_view name, Vec size,
+[[nodiscard]] nlohmann::ordered_json tank_scene(std::string_view name, Vec2 size,
                                                 nlohmann::ordered_json fluid, double spacing,
                                                 double sound, double end_time);
 /// A fluid in empty space that starts without pressure: no tank, no gravity.
 [[nodiscard]] nlohmann::ordered_json in_space(std::string_view name, nlohmann::ordered_json shape,
                                               double spacing, double sound, double end_time);
-[[nodiscard]] nlohmann::ordered_json rectangle(Vec corner, Vec size);
-[[nodiscard]] nlohmann::ordered_json circle(Vec center, double radius);
+[[nodiscard]] nlohmann::ordered_json rectangle(Vec2 corner, Vec2 size);
+[[nodiscard]] nlohmann::ordered_json circle(Vec2 center, double radius);
 
 /// A column of w x H that falls into a tank of 4 w, but at least 2 H: sizes in m, `per_length`
 /// particles in the shorter side.

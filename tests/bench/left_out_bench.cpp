@@ -65,7 +65,7 @@ constexpr Case kCases[] = {
     {"no_viscosity", [](Scene& scene) { scene.method.viscosity.reset(); }},
     {"no_reinitialisation", [](Scene& scene) { scene.method.reinitialisation.reset(); }},
     {"no_sensors", [](Scene& scene) { scene.sensors.clear(); }},
-    {"no_gravity", [](Scene& scene) { scene.method.gravity = Vec::Zero(); }},
+    {"no_gravity", [](Scene& scene) { scene.method.gravity = Vec2::Zero(); }},
     {"no_walls",
      [](Scene& scene) {
        scene.tank.reset();

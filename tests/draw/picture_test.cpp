@@ -11,7 +11,7 @@ namespace {
 
 PictureView unit_square(int pixels) {
   PictureView how;
-  how.view = {Vec::Zero(), Vec::Ones()};
+  how.view = {Vec2::Zero(), Vec2::Ones()};
   how.diameter = 0.1;
   how.low = 0.0;
   how.high = 100.0;
@@ -21,7 +21,8 @@ PictureView unit_square(int pixels) {
 
 Snapshot frame_of(std::vector<float> x, std::vector<float> y, std::vector<float> pressure) {
   Snapshot frame;
-  frame.position = {std::move(x), std::move(y)};
+  frame.position[0] = std::move(x);
+  frame.position[1] = std::move(y);
   frame.pressure = std::move(pressure);
   return frame;
 }

@@ -21,7 +21,7 @@ TEST(VtkFile, HasTheLayoutThatParaViewReads) {
   Snapshot frame = make_test_snapshot(100000);
   frame.origin.x() = 1e5;
   write_vtk(folder / vtk_name("frames/frame-000012.h5"), frame);
-  write_vtk(folder / "empty.hdf", Snapshot{});
+  write_vtk(folder / "empty.hdf", empty_snapshot(0, 0.0, 2));
   const fs::path script = fs::path(__FILE__).parent_path() / "check_vtk.py";
   const std::string command =
       python + " '" + script.string() + "' '" + folder.path().string() + "'";

@@ -149,7 +149,7 @@ TEST(Picture, FarFromZeroCountsItsAxisFromWholeMetres) {
   frame.position[0] = {0.0F, 0.6F};
   frame.position[1] = {0.0F, 0.3F};
   frame.pressure = {0.0F, 0.0F};
-  frame.velocity.fill(frame.pressure);
+  frame.velocity[0] = frame.velocity[1] = frame.pressure;
   frame.id = {0, 1};
   const std::string svg = picture_svgs(report_of(scene), {frame}).at(0);
   EXPECT_NE(svg.find(">x - 99999 m, m<"), std::string::npos);

@@ -15,19 +15,19 @@ constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 /// dimensionless shape is the same.
 Scene half_size_scene() {
   Scene scene;
-  scene.tank = Tank{0.805, 0.3, true};
+  scene.tank = Tank{0.805, 0.3, {}, true};
   scene.scales = Scales{0.15, 0.3};
-  scene.method.gravity = Vec(0.0, -1.6);
+  scene.method.gravity = Vec2(0.0, -1.6);
   scene.method.reference_density = 800.0;
   scene.method.smoothing_length = 0.0015;
   Sensor wall;
   wall.name = "low";
-  wall.position = Vec(0.805, 0.0015);
+  wall.position = Vec2(0.805, 0.0015);
   wall.smoothing_length = 0.0015;
   Sensor level;
   level.name = "surface";
   level.kind = SensorKind::surface_height;
-  level.position = Vec(0.15, 0.0);
+  level.position = Vec2(0.15, 0.0);
   Sensor front;
   front.name = "tip";
   front.kind = SensorKind::surge_front;
@@ -86,7 +86,7 @@ Reference made_up_reference() {
   wall.arrival = 2.505;
   wall.values = interval_averages(curve_of(impact), pressure_times);
   wall.peak = {1.0, 0.5, 1.5};
-  LevelReference level{"H1", Vec(0.3, 0.0), std::vector<double>(level_times.size(), 0.5)};
+  LevelReference level{"H1", Vec2(0.3, 0.0), std::vector<double>(level_times.size(), 0.5)};
   return {.name = "made_up",
           .title = "",
           .citation = "",

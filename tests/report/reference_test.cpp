@@ -26,9 +26,9 @@ std::string text_of(std::string_view name) {
 
 Scene paper_scene() {
   Scene scene;
-  scene.tank = Tank{1.61, 0.6, true};
+  scene.tank = Tank{1.61, 0.6, {}, true};
   scene.scales = Scales{0.3, 0.6};
-  scene.method.gravity = Vec(0.0, -9.81);
+  scene.method.gravity = Vec2(0.0, -9.81);
   return scene;
 }
 
@@ -74,7 +74,7 @@ TEST(References, MatchASceneOfTheSameShapeAtAnySize) {
   Scene scene = paper_scene();
   ASSERT_NE(matching_reference(scene), nullptr);
   EXPECT_EQ(matching_reference(scene)->name, "lobovsky2014_h300");
-  scene.tank = Tank{16.1, 6.0, true};
+  scene.tank = Tank{16.1, 6.0, {}, true};
   scene.scales = Scales{3.0, 6.0};
   EXPECT_NE(matching_reference(scene), nullptr);
 }
@@ -87,7 +87,7 @@ TEST(References, DoNotMatchAnotherShapeOrASceneWithoutTankGravityOrScales) {
   Scene no_tank = paper_scene();
   no_tank.tank.reset();
   Scene no_gravity = paper_scene();
-  no_gravity.method.gravity = Vec::Zero();
+  no_gravity.method.gravity = Vec2::Zero();
   Scene no_scales = paper_scene();
   no_scales.scales.reset();
   for (const Scene& scene : {wide, narrow_column, no_tank, no_gravity, no_scales}) {

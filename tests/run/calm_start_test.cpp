@@ -36,7 +36,7 @@ json polygon(json points) { return {{"shape", "polygon"}, {"points", std::move(p
 
 /// Runs to about three times sqrt(h0/g), h0 the water's level. Eq. 11 on a flat bed reads the
 /// pressure of the middle of half a kernel, 4/(3 pi) h above it; errors are shares of rho_0 g h.
-void expect_calm(const json& text, const Vec& sensor, double area, double level = 0.3) {
+void expect_calm(const json& text, const Vec2& sensor, double area, double level = 0.3) {
   const ParseResult parsed = parse_scene(text.dump());
   ASSERT_TRUE(parsed.scene);
   const Scene& scene = *parsed.scene;
@@ -67,29 +67,29 @@ void expect_calm(const json& text, const Vec& sensor, double area, double level 
 TEST(CalmStart, OverASlope) {
   expect_calm(still_water(0.8, {polygon({{0, 0}, {0.4, 0}, {0.8, 0.2}, {0.8, 0.3}, {0, 0.3}})},
                           {polygon({{0.4, 0}, {0.8, 0}, {0.8, 0.2}})}),
-              Vec(0.2, 0), 0.8 * 0.3 - 0.04);
+              Vec2(0.2, 0), 0.8 * 0.3 - 0.04);
 }
 
 TEST(CalmStart, AroundACircle) {
   const json circle = {{"shape", "circle"}, {"center", {0.3, 0.13}}, {"radius", 0.06}};
-  expect_calm(still_water(0.6, {rectangle(0, 0, 0.6, 0.3)}, {circle}), Vec(0.3, 0),
+  expect_calm(still_water(0.6, {rectangle(0, 0, 0.6, 0.3)}, {circle}), Vec2(0.3, 0),
               0.18 - std::numbers::pi * 0.0036);
 }
 
 TEST(CalmStart, OverSteps) {
   expect_calm(still_water(0.8, {rectangle(0, 0, 0.8, 0.3)},
                           {rectangle(0.403, 0, 0.2, 0.056), rectangle(0.603, 0, 0.197, 0.103)}),
-              Vec(0.2, 0), 0.24 - 0.0112 - 0.197 * 0.103);
+              Vec2(0.2, 0), 0.24 - 0.0112 - 0.197 * 0.103);
 }
 
 TEST(CalmStart, InATankThatIsNoMultipleOfTheSpacing) {
-  expect_calm(still_water(0.604, {rectangle(0, 0, 0.604, 0.3)}, {}), Vec(0.3, 0), 0.604 * 0.3);
+  expect_calm(still_water(0.604, {rectangle(0, 0, 0.604, 0.3)}, {}), Vec2(0.3, 0), 0.604 * 0.3);
 }
 
 TEST(CalmStart, OverARaisedBedOffTheLattice) {
   const json outline = {{0, 0}, {0.6, 0}, {0.6, 0.055}, {0, 0.055}};
   for (const json& bed : {rectangle(0, 0, 0.6, 0.055), polygon(outline)}) {
-    expect_calm(still_water(0.6, {rectangle(0, 0.055, 0.6, 0.3)}, {bed}), Vec(0.3, 0.055), 0.18,
+    expect_calm(still_water(0.6, {rectangle(0, 0.055, 0.6, 0.3)}, {bed}), Vec2(0.3, 0.055), 0.18,
                 0.355);
   }
 }
@@ -97,23 +97,23 @@ TEST(CalmStart, OverARaisedBedOffTheLattice) {
 TEST(CalmStart, OverASlopingBed) {
   expect_calm(still_water(0.6, {polygon({{0, 0.05}, {0.6, 0.08}, {0.6, 0.3}, {0, 0.3}})},
                           {polygon({{0, 0}, {0.6, 0}, {0.6, 0.08}, {0, 0.05}})}),
-              Vec(0.1, 0.055), 0.3 * (0.25 + 0.22));
+              Vec2(0.1, 0.055), 0.3 * (0.25 + 0.22));
 }
 
 TEST(CalmStart, BesideAWallOffTheLattice) {
   expect_calm(still_water(0.655, {rectangle(0.055, 0, 0.6, 0.3)}, {rectangle(0, 0, 0.055, 0.4)}),
-              Vec(0.3, 0), 0.18);
+              Vec2(0.3, 0), 0.18);
 }
 
 TEST(CalmStart, OfTwoRegionsThatMakeAnL) {
   expect_calm(still_water(0.6, {rectangle(0, 0, 0.304, 0.154), rectangle(0, 0.154, 0.6, 0.146)},
                           {rectangle(0.304, 0, 0.296, 0.154)}),
-              Vec(0.15, 0), 0.304 * 0.154 + 0.6 * 0.146);
+              Vec2(0.15, 0), 0.304 * 0.154 + 0.6 * 0.146);
 }
 
 TEST(CalmStart, OfStackedRegions) {
   expect_calm(still_water(0.6, {rectangle(0, 0, 0.6, 0.15), rectangle(0, 0.15, 0.6, 0.15)}, {}),
-              Vec(0.3, 0), 0.18);
+              Vec2(0.3, 0), 0.18);
 }
 
 TEST(CalmStart, IsReportedWhereParticlesWerePacked) {

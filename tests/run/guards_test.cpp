@@ -18,7 +18,7 @@ Method paper_method() {
   method.smoothing_length = 0.003;
   method.reference_density = 1000.0;
   method.sound_speed = 24.0;
-  method.gravity = {0.0, -9.81};
+  method.gravity = Vec2(0.0, -9.81);
   return method;
 }
 
@@ -215,7 +215,7 @@ TEST(EnergyScale, OfAFluidAtRestWithoutGravityIsNotZero) {
   state.particles.position[0] = {0.0};
   state.particles.position[1] = {0.0};
   Method method = paper_method();
-  method.gravity = Vec::Zero();
+  method.gravity = Vec2::Zero();
   const GuardBaselines base = initial_baselines(method, state, Energy{});
   EXPECT_DOUBLE_EQ(base.energy_scale, 0.5 * method.particle_mass() * 0.24 * 0.24);
 }

@@ -22,23 +22,23 @@ constexpr double kAir = -300.0;
 
 /// A solver with these particles, all of one pressure, and the scene's walls left out: sampling
 /// looks at the fluid and at the scene's shape.
-Solver fluid_at(const Scene& scene, const std::vector<Vec>& places, double pressure) {
+Solver fluid_at(const Scene& scene, const std::vector<Vec2>& places, double pressure) {
   SolverState state;
   const double c = scene.method.sound_speed;
-  for (const Vec& place : places) {
+  for (const Vec2& place : places) {
     Particles& p = state.particles;
     p.id.push_back(static_cast<double>(p.size()));
     append(p.position, place);
-    append(p.velocity, Vec(Vec::Zero()));
+    append(p.velocity, Vec2(Vec2::Zero()));
     p.density_excess.push_back(pressure / (c * c));
   }
   return {scene.method, scene.domain, state, {}, {}};
 }
 
 /// Particles in columns from the right wall of the tank to the left, all its height.
-std::vector<Vec> columns_at_wall(const Scene& scene, int columns) {
+std::vector<Vec2> columns_at_wall(const Scene& scene, int columns) {
   const double dx = scene.method.spacing;
-  std::vector<Vec> places;
+  std::vector<Vec2> places;
   for (int column = 0; column < columns; ++column) {
     for (int row = 0; (row + 0.5) * dx < scene.tank->height; ++row) {
       places.emplace_back(scene.tank->width - (column + 0.5) * dx, (row + 0.5) * dx);
@@ -50,7 +50,7 @@ std::vector<Vec> columns_at_wall(const Scene& scene, int columns) {
 Sensor at_wall(const Scene& scene, std::optional<double> air) {
   Sensor sensor;
   sensor.name = "P";
-  sensor.position = {scene.tank->width, 0.15};
+  sensor.position = Vec2(scene.tank->width, 0.15);
   sensor.air_pressure = air;
   return sensor;
 }
@@ -117,7 +117,7 @@ TEST(PressureSampler, WithoutFluidTheFaceFeelsTheAirWithoutWeight) {
   EXPECT_EQ(plain.weight, 0.0);
 }
 
-Sensor sensor_at(const std::string& name, SensorKind kind, const Vec& position, double interval) {
+Sensor sensor_at(const std::string& name, SensorKind kind, const Vec2& position, double interval) {
   Sensor sensor;
   sensor.name = name;
   sensor.kind = kind;
@@ -128,8 +128,8 @@ Sensor sensor_at(const std::string& name, SensorKind kind, const Vec& position, 
 
 TEST(SensorArray, KeepsSensorsOfOneKindAndIntervalInOneTable) {
   Scene scene = small_dam_break();
-  const Vec low(0.05, 0.01);
-  const Vec high(0.05, 0.10);
+  const Vec2 low(0.05, 0.01);
+  const Vec2 high(0.05, 0.10);
   scene.sensors = {sensor_at("low", SensorKind::pressure, low, 0.001),
                    sensor_at("energy", SensorKind::energy, low, 0.001),
                    sensor_at("often", SensorKind::pressure, low, 0.0),
@@ -158,15 +158,15 @@ TEST(SensorArray, SamplesManySensorsToTheSameBitsWithAnyNumberOfThreads) {
   Scene scene = small_dam_break();
   scene.sensors.clear();
   for (int i = 0; i < 100; ++i) {
-    const Vec place(0.0015 * i, 0.0016 * i);
+    const Vec2 place(0.0015 * i, 0.0016 * i);
     const SensorKind kind = i % 3 == 0 ? SensorKind::surface_height : SensorKind::pressure;
     scene.sensors.push_back(sensor_at("s" + std::to_string(i), kind, place, 0.0));
   }
-  const Vec wet(0.003, 0.003);
+  const Vec2 wet(0.003, 0.003);
   scene.sensors.push_back(sensor_at("energy", SensorKind::energy, wet, 0.0));
   scene.sensors.push_back(sensor_at("wet at once", SensorKind::arrival, wet, 0.0));
   scene.sensors.push_back(sensor_at("energy again", SensorKind::energy, wet, 0.0));
-  scene.sensors.push_back(sensor_at("never wet", SensorKind::arrival, Vec(10.0, 10.0), 0.0));
+  scene.sensors.push_back(sensor_at("never wet", SensorKind::arrival, Vec2(10.0, 10.0), 0.0));
   const auto run = [&](int threads) {
     Simulation simulation(scene, {threads, ""});
     while (simulation.solver().step_count() < 40) simulation.step();

@@ -69,7 +69,7 @@ TEST(Simulation, ArrivalIsOneSampleWhenTheFluidIsThere) {
     simulation.step();
     const bool sees = series_named(simulation, "arrival").size() > 0;
     if (!seen && sees) {
-      EXPECT_LE(simulation.solver().distance_to_fluid({0.4, 0.01}), 1.5 * 0.0075);
+      EXPECT_LE(simulation.solver().distance_to_fluid(Vec2(0.4, 0.01)), 1.5 * 0.0075);
       EXPECT_EQ(series_named(simulation, "arrival").values[0], simulation.solver().time());
     }
   }
@@ -183,7 +183,7 @@ TEST(Simulation, AnOverflowingTankIsNoFailure) {
   // Particles that leave over the rim are counted apart from those that pass through a wall.
   Simulation simulation(small_dam_break(), {1, ""});
   while (!simulation.finished()) simulation.step();
-  EXPECT_EQ(simulation.overtopped() + simulation.leaked(), simulation.solver().removed().size());
+  EXPECT_EQ(simulation.overtopped() + simulation.leaked(), simulation.solver().removed_count());
 }
 
 }  // namespace

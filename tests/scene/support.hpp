@@ -35,7 +35,8 @@ inline std::vector<std::filesystem::path> json_files(const std::filesystem::path
 }
 
 /// Smallest distance between any two points, O(n^2).
-inline double smallest_distance(const std::vector<Vec>& points) {
+template <class Point>
+double smallest_distance(const std::vector<Point>& points) {
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double wall_density(const Method& m, double pressure) {
+double wall_density(const MethodN<2>& m, double pressure) {
   return m.reference_density + pressure / (m.sound_speed * m.sound_speed);  // eq. 3
 }
 
 /// eq. 8 for one pair, with its quadratic part.
-double viscous_pressure(const ArtificialViscosity& term, const Method& m, double rho_i,
-                        double rho_j, const Vec& v_ij, const Vec& x_ij) {
+double viscous_pressure(const ArtificialViscosity& term, const MethodN<2>& m, double rho_i,
+                        double rho_j, const Vec2& v_ij, const Vec2& x_ij) {
   const double h = m.smoothing_length;
   const double rho_mean = 0.5 * (rho_i + rho_j);
   const double mu = h * v_ij.dot(x_ij) / (x_ij.squaredNorm() + term.epsilon * h * h);
@@ -24,7 +24,7 @@ double viscous_pressure(const ArtificialViscosity& term, const Method& m, double
 
 /// What is diffused between i and j (eq. 7): the density difference, less its hydrostatic part
 /// rho_0 f . x_ji / c^2 with Fourtakas' term.
-double diffused_difference(const Method& m, double rho_i, double rho_j, const Vec& x_ij) {
+double diffused_difference(const MethodN<2>& m, double rho_i, double rho_j, const Vec2& x_ij) {
   if (m.diffusion->kind == DiffusionKind::molteni_colagrossi) return rho_j - rho_i;
   const double c_sq = m.sound_speed * m.sound_speed;
   return rho_j - rho_i + m.reference_density * m.gravity.dot(x_ij) / c_sq;
@@ -32,7 +32,7 @@ double diffused_difference(const Method& m, double rho_i, double rho_j, const Ve
 
 /// The nu with which the viscous stress between a lattice of fluid that slides at `speed` and the
 /// lattice of the wall below is Cf/2 rho_0 speed^2: each row of fluid against each of the wall.
-double wall_law_nu(const Method& m, double speed) {
+double wall_law_nu(const MethodN<2>& m, double speed) {
   const double dx = m.spacing;
   double sum = 0.0;
   for (int row = 0; row < 6; ++row) {
@@ -47,7 +47,7 @@ double wall_law_nu(const Method& m, double speed) {
 
 }  // namespace
 
-double smoothing(const Method& m, double r) {
+double smoothing(const MethodN<2>& m, double r) {
   const double h = m.smoothing_length;
   const double R = r / h;
   if (m.kernel == KernelKind::truncated_gaussian) {
@@ -56,7 +56,7 @@ double smoothing(const Method& m, double r) {
   return R < 2.0 ? 7.0 / (4.0 * kPi * h * h) * std::pow(1.0 - R / 2.0, 4) * (2.0 * R + 1.0) : 0.0;
 }
 
-double smoothing_slope(const Method& m, double r) {
+double smoothing_slope(const MethodN<2>& m, double r) {
   const double h = m.smoothing_length;
   const double R = r / h;
   if (m.kernel == KernelKind::truncated_gaussian) return 2.0 / (h * h) * smoothing(m, r);
@@ -64,11 +64,11 @@ double smoothing_slope(const Method& m, double r) {
   return R < 2.0 ? 35.0 / (4.0 * kPi * std::pow(h, 4)) * std::pow(1.0 - R / 2.0, 3) : 0.0;
 }
 
-std::vector<double> plain_wall_pressures(const Method& m, const Fluid& fluid,
-                                         const std::vector<Vec>& walls) {
+std::vector<double> plain_wall_pressures(const MethodN<2>& m, const Fluid& fluid,
+                                         const std::vector<Vec2>& walls) {
   const double c_sq = m.sound_speed * m.sound_speed;
   std::vector<double> pressures;
-  for (const Vec& wall : walls) {
+  for (const Vec2& wall : walls) {
     double numerator = 0.0;
     double weight = 0.0;
     for (std::size_t f = 0; f < fluid.size(); ++f) {
@@ -84,7 +84,7 @@ std::vector<double> plain_wall_pressures(const Method& m, const Fluid& fluid,
   return pressures;
 }
 
-PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Vec>& walls,
+PlainRates plain_rates(const MethodN<2>& m, const Fluid& fluid, const std::vector<Vec2>& walls,
                        const std::vector<double>& wall_pressure) {
   const double mass = m.reference_density * m.spacing * m.spacing;
   const double c = m.sound_speed;
@@ -93,18 +93,18 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     const double rho_i = m.reference_density + fluid.excess[i];
     const double p_i = c * c * fluid.excess[i];
-    Vec a = m.gravity;
+    Vec2 a = m.gravity;
     double a_size = m.gravity.norm();
     double d_rho = 0.0;
     double d_rho_size = 0.0;
     // mu_i = mu_j = rho_0 nu, and the volumes of the viscous stress are those at rho_0.
     const double rest_volume = m.spacing * m.spacing;
-    const auto add = [&](const Vec& x_j, const Vec& v_j, double rho_j, double p_j, double pi_ij,
+    const auto add = [&](const Vec2& x_j, const Vec2& v_j, double rho_j, double p_j, double pi_ij,
                          bool diffuses, double nu) {
-      const Vec x_ij = fluid.x[i] - x_j;
-      const Vec grad_W = -smoothing_slope(m, x_ij.norm()) * x_ij;
+      const Vec2 x_ij = fluid.x[i] - x_j;
+      const Vec2 grad_W = -smoothing_slope(m, x_ij.norm()) * x_ij;
       const double volume_j = mass / rho_j;
-      const Vec force = -mass * (p_i / (rho_i * rho_i) + p_j / (rho_j * rho_j) + pi_ij) * grad_W;
+      const Vec2 force = -mass * (p_i / (rho_i * rho_i) + p_j / (rho_j * rho_j) + pi_ij) * grad_W;
       double rate = rho_i * volume_j * (fluid.v[i] - v_j).dot(grad_W);
       d_rho_size += std::abs(rate);
       if (m.diffusion && diffuses) {
@@ -118,7 +118,7 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
       a += force;
       a_size += force.norm();
       // x_ij . grad W / |x_ij|^2 = -slope, also where x_ij = 0.
-      const Vec drag =
+      const Vec2 drag =
           -2.0 * nu * rest_volume * smoothing_slope(m, x_ij.norm()) * (fluid.v[i] - v_j);
       a += drag;
       a_size += drag.norm();
@@ -144,7 +144,7 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
                     rho_i, rho_w, fluid.v[i], fluid.x[i] - walls[w])
               : 0.0;
       const bool diffuses = m.diffusion && m.diffusion->kind == DiffusionKind::molteni_colagrossi;
-      add(walls[w], Vec::Zero(), rho_w, wall_pressure[w], pi_iw, diffuses, wall_nu);
+      add(walls[w], Vec2::Zero(), rho_w, wall_pressure[w], pi_iw, diffuses, wall_nu);
     }
     out.acceleration.push_back(a);
     out.density.push_back(d_rho);
@@ -154,15 +154,15 @@ PlainRates plain_rates(const Method& m, const Fluid& fluid, const std::vector<Ve
   return out;
 }
 
-std::vector<double> plain_reinitialisation(const Method& m, const Fluid& fluid,
-                                           const std::vector<Vec>& walls,
+std::vector<double> plain_reinitialisation(const MethodN<2>& m, const Fluid& fluid,
+                                           const std::vector<Vec2>& walls,
                                            const std::vector<double>& wall_pressure) {
   const double mass = m.reference_density * m.spacing * m.spacing;
   std::vector<double> fresh;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     double masses = 0.0;
     double volumes = 0.0;
-    const auto add = [&](const Vec& x_j, double rho_j) {
+    const auto add = [&](const Vec2& x_j, double rho_j) {
       const double w = smoothing(m, (fluid.x[i] - x_j).norm());
       masses += mass * w;
       volumes += mass / rho_j * w;

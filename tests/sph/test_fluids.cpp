@@ -7,8 +7,8 @@
 
 namespace sluice {
 
-Solver solver_for(const TestMethod& m, const SolverState& state, const std::vector<Vec>& walls,
-                  const Execution& execution) {
+SolverN<2> solver_for(const TestMethod& m, const SolverStateN<2>& state,
+                      const std::vector<Vec2>& walls, const Execution& execution) {
   return {m, m.domain, state, walls, execution};
 }
 
@@ -34,36 +34,36 @@ TestMethod full_method() {
   return m;
 }
 
-Fluid random_block(Dice& dice, const Vec& corner, int columns, int rows, double spacing,
+Fluid random_block(Dice& dice, const Vec2& corner, int columns, int rows, double spacing,
                    double perturbation, double speed, double excess) {
   Fluid fluid;
-  const Vec one = Vec::Ones();
+  const Vec2 one = Vec2::Ones();
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const Vec place = corner + spacing * Vec(column + 0.5, row + 0.5);
-      const Vec shift = dice.in_box(-perturbation * spacing * one, perturbation * spacing * one);
-      const Vec velocity = dice.in_box(-speed * one, speed * one);
+      const Vec2 place = corner + spacing * Vec2(column + 0.5, row + 0.5);
+      const Vec2 shift = dice.in_box(-perturbation * spacing * one, perturbation * spacing * one);
+      const Vec2 velocity = dice.in_box(-speed * one, speed * one);
       fluid.add(place + shift, velocity, dice.between(-excess, excess));
     }
   }
   return fluid;
 }
 
-std::vector<Vec> walls_around(const Vec& corner, int columns, int rows, double spacing) {
+std::vector<Vec2> walls_around(const Vec2& corner, int columns, int rows, double spacing) {
   constexpr int kLayers = 3;
-  std::vector<Vec> walls;
+  std::vector<Vec2> walls;
   for (int row = -kLayers; row < rows; ++row) {
     for (int column = -kLayers; column < columns + kLayers; ++column) {
       if (row >= 0 && column >= 0 && column < columns) continue;
-      walls.emplace_back(corner + spacing * Vec(column + 0.5, row + 0.5));
+      walls.emplace_back(corner + spacing * Vec2(column + 0.5, row + 0.5));
     }
   }
   return walls;
 }
 
-SolverState start_from(const Fluid& fluid) {
-  SolverState state;
-  Particles& p = state.particles;
+SolverStateN<2> start_from(const Fluid& fluid) {
+  SolverStateN<2> state;
+  ParticlesN<2>& p = state.particles;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     append(p.position, fluid.x[i]);
     append(p.velocity, fluid.v[i]);
@@ -73,8 +73,9 @@ SolverState start_from(const Fluid& fluid) {
   return state;
 }
 
-std::vector<double> by_id(const SolverState& state, const FieldMember<Particles, Values>& field) {
-  const Particles& p = state.particles;
+std::vector<double> by_id(const SolverStateN<2>& state,
+                          const FieldMember<ParticlesN<2>, Values, ParticlesN<2>::Axes>& field) {
+  const ParticlesN<2>& p = state.particles;
   std::vector<double> values(p.size(), std::nan(""));
   for (std::size_t i = 0; i < p.size(); ++i) {
     values.at(static_cast<std::size_t>(p.id[i])) = field.of(p)[i];
@@ -82,29 +83,29 @@ std::vector<double> by_id(const SolverState& state, const FieldMember<Particles,
   return values;
 }
 
-Fluid fluid_of(const SolverState& state) {
-  const auto x = by_id(state, {&Particles::position, 0});
-  const auto y = by_id(state, {&Particles::position, 1});
-  const auto vx = by_id(state, {&Particles::velocity, 0});
-  const auto vy = by_id(state, {&Particles::velocity, 1});
+Fluid fluid_of(const SolverStateN<2>& state) {
+  const auto x = by_id(state, {&ParticlesN<2>::position, 0});
+  const auto y = by_id(state, {&ParticlesN<2>::position, 1});
+  const auto vx = by_id(state, {&ParticlesN<2>::velocity, 0});
+  const auto vy = by_id(state, {&ParticlesN<2>::velocity, 1});
   Fluid fluid;
   for (std::size_t i = 0; i < x.size(); ++i) fluid.add({x[i], y[i]}, {vx[i], vy[i]});
-  fluid.excess = by_id(state, &Particles::density_excess);
+  fluid.excess = by_id(state, &ParticlesN<2>::density_excess);
   return fluid;
 }
 
-Fluid middle_of_step(Fluid fluid, const SolverState& start, double dt) {
-  const auto ax = by_id(start, {&Particles::acceleration, 0});
-  const auto ay = by_id(start, {&Particles::acceleration, 1});
+Fluid middle_of_step(Fluid fluid, const SolverStateN<2>& start, double dt) {
+  const auto ax = by_id(start, {&ParticlesN<2>::acceleration, 0});
+  const auto ay = by_id(start, {&ParticlesN<2>::acceleration, 1});
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    fluid.v[i] += 0.5 * dt * Vec(ax[i], ay[i]);
+    fluid.v[i] += 0.5 * dt * Vec2(ax[i], ay[i]);
     fluid.x[i] += 0.5 * dt * fluid.v[i];
   }
   return fluid;
 }
 
-void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what) {
-  for (const Field& field : kFields) {
+void expect_same_bits(const SolverStateN<2>& a, const SolverStateN<2>& b, const std::string& what) {
+  for (const FieldN<2>& field : FieldList<2>::fields) {
     const auto& one = field.values.of(a.particles);
     const auto& other = field.values.of(b.particles);
     ASSERT_EQ(one.size(), other.size()) << what << ", field " << field.name;
@@ -117,8 +118,8 @@ void expect_same_bits(const SolverState& a, const SolverState& b, const std::str
   EXPECT_EQ(std::memcmp(&a.time_step, &b.time_step, sizeof(double)), 0) << what << ", time step";
   ASSERT_EQ(a.removed.size(), b.removed.size()) << what;
   for (std::size_t k = 0; k < a.removed.size(); ++k) {
-    const RemovedParticle& one = a.removed[k];
-    const RemovedParticle& other = b.removed[k];
+    const RemovedParticleN<2>& one = a.removed[k];
+    const RemovedParticleN<2>& other = b.removed[k];
     EXPECT_EQ(std::tie(one.id, one.cause, one.step, one.time, one.position, one.velocity,
                        one.density_excess),
               std::tie(other.id, other.cause, other.step, other.time, other.position,
@@ -143,37 +144,37 @@ void expect_near(std::span<const double> a, std::span<const double> b, double to
                               << ", expected " << b[where];
 }
 
-void expect_near(std::span<const Vec> a, std::span<const Vec> b, double tolerance,
+void expect_near(std::span<const Vec2> a, std::span<const Vec2> b, double tolerance,
                  const std::string& what) {
-  const auto flat = [](std::span<const Vec> vectors) {
+  const auto flat = [](std::span<const Vec2> vectors) {
     std::vector<double> numbers;
-    for (const Vec& v : vectors) numbers.insert(numbers.end(), {v.x(), v.y()});
+    for (const Vec2& v : vectors) numbers.insert(numbers.end(), {v.x(), v.y()});
     return numbers;
   };
   expect_near(flat(a), flat(b), tolerance, what + " (x0, y0, x1, ...)");
 }
 
-void run_steps(Solver& solver, int steps) {
+void run_steps(SolverN<2>& solver, int steps) {
   for (int n = 0; n < steps; ++n) solver.step();
 }
 
-FluidRates rates_at_start(TestMethod m, const Fluid& fluid, const std::vector<Vec>& walls) {
+FluidRates rates_at_start(TestMethod m, const Fluid& fluid, const std::vector<Vec2>& walls) {
   m.integrator = Integrator::modified_leap_frog;
-  Solver solver = solver_for(m, start_from(fluid), walls, {});
+  SolverN<2> solver = solver_for(m, start_from(fluid), walls, {});
   return rates_of_next_step(solver);
 }
 
-FluidRates rates_of_next_step(Solver& solver) {
+FluidRates rates_of_next_step(SolverN<2>& solver) {
   solver.step();
-  const SolverState state = solver.state();
+  const SolverStateN<2> state = solver.state();
   const Fluid full = fluid_of(state);
-  const auto vx_half = by_id(state, {&Particles::velocity_half, 0});
-  const auto vy_half = by_id(state, {&Particles::velocity_half, 1});
-  const auto half = by_id(state, &Particles::density_excess_half);
+  const auto vx_half = by_id(state, {&ParticlesN<2>::velocity_half, 0});
+  const auto vy_half = by_id(state, {&ParticlesN<2>::velocity_half, 1});
+  const auto half = by_id(state, &ParticlesN<2>::density_excess_half);
   const double half_step = 0.5 * solver.time_step();
   FluidRates rates;
   for (std::size_t i = 0; i < full.size(); ++i) {
-    rates.acceleration.emplace_back((full.v[i] - Vec(vx_half[i], vy_half[i])) / half_step);
+    rates.acceleration.emplace_back((full.v[i] - Vec2(vx_half[i], vy_half[i])) / half_step);
     rates.density.push_back((full.excess[i] - half[i]) / half_step);
   }
   return rates;

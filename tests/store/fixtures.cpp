@@ -20,9 +20,11 @@ using Limits = std::numeric_limits<double>;
 bool same(const RemovedParticle& a, const RemovedParticle& b) {
   return same_bits(a.id, b.id) && a.cause == b.cause && a.step == b.step &&
          same_bits(a.time, b.time) &&
-         std::all_of(kRemovedFields.begin(), kRemovedFields.end(), [&](const RemovedField& field) {
-           return same_bits(field.value.of(a), field.value.of(b));
-         });
+         same_bits(Values(a.position.begin(), a.position.end()),
+                   Values(b.position.begin(), b.position.end())) &&
+         same_bits(Values(a.velocity.begin(), a.velocity.end()),
+                   Values(b.velocity.begin(), b.velocity.end())) &&
+         same_bits(a.density_excess, b.density_excess);
 }
 
 template <class List, class Same>
@@ -80,8 +82,10 @@ std::vector<SampleTable> make_samples() {
   };
 }
 
-Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator integrator) {
+Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator integrator,
+                           int dimensions) {
   Checkpoint checkpoint;
+  checkpoint.solver.particles = no_particles(dimensions);
   checkpoint.scene_hash = "00112233445566778899aabbccddeeff";
   checkpoint.build = "0.1.0";
   checkpoint.simd_target = "AVX2";
@@ -90,30 +94,36 @@ Checkpoint make_checkpoint(std::uint64_t step, std::size_t count, Integrator int
   checkpoint.solver.step = step;
   checkpoint.solver.time = 1e-4 * static_cast<double>(step);
   checkpoint.solver.time_step = 1e-4;
-  for (std::size_t i = 0; i < kFields.size(); ++i) {
-    if (carries(integrator, kFields[i])) {
-      kFields[i].values.of(checkpoint.solver.particles) =
+  const auto fields = fields_in(static_cast<std::size_t>(dimensions));
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (carries(integrator, fields[i])) {
+      fields[i].values.of(checkpoint.solver.particles) =
           awkward_values(count, 100.0 * static_cast<double>(i));
     }
   }
   checkpoint.solver.removed = {
-      {3.0, RemovalCause::overtopped, 11, 0.011, {1.5, 0.61}, {0.5, -1.5}, 2.5},
-      {5.0, RemovalCause::leaked, 12, 0.012, {-0.1, -0.0}, {-0.0, 3.5}, -4.5},
-      {6.0, RemovalCause::too_thin, 13, 0.013, {0.1, 0.2}, {5.5, 6.5}, -301.0}};
+      {3.0, RemovalCause::overtopped, 11, 0.011, Vec2(1.5, 0.61), Vec2(0.5, -1.5), 2.5},
+      {5.0, RemovalCause::leaked, 12, 0.012, Vec2(-0.1, -0.0), Vec2(-0.0, 3.5), -4.5},
+      {6.0, RemovalCause::too_thin, 13, 0.013, Vec2(0.1, 0.2), Vec2(5.5, 6.5), -301.0}};
+  if (dimensions == 3) {
+    for (RemovedParticle& removed : checkpoint.solver.removed) {
+      removed.position = Vec3(removed.position[0], removed.position[1], 0.3);
+      removed.velocity = Vec3(removed.velocity[0], removed.velocity[1], -0.7);
+    }
+  }
   checkpoint.samples = make_samples();
   checkpoint.guards = {10.0, 20.0, 30.0, 40.0, 50.0, -60.0, 70.0, 80.0, 90.0};
   checkpoint.next_snapshot = 4;
   return checkpoint;
 }
 
-Snapshot make_test_snapshot(std::size_t count) {
-  Snapshot frame;
-  frame.step = 17;
-  frame.time = 0.25;
+Snapshot make_test_snapshot(std::size_t count, int dimensions) {
+  Snapshot frame = empty_snapshot(17, 0.25, static_cast<std::size_t>(dimensions));
   for (std::size_t i = 0; i < count; ++i) {
     const auto value = static_cast<float>(i) / 3.0F;
-    append(frame.position, std::array{value, -value});
-    append(frame.velocity, std::array{value * 1e-42F, -0.0F});  // denormal in single precision
+    append(frame.position, std::array{value, -value, 2.0F * value});
+    // A denormal in single precision.
+    append(frame.velocity, std::array{value * 1e-42F, -0.0F, value});
     frame.pressure.push_back(value * 1e30F);
     frame.id.push_back(count - i);
   }
@@ -163,7 +173,10 @@ bool same_bits(const Checkpoint& a, const Checkpoint& b) {
   const auto same_tables = [](const SampleTable& x, const SampleTable& y) {
     return same_bits(x, y);
   };
-  const bool fields = std::all_of(kFields.begin(), kFields.end(), [&](const Field& field) {
+  const std::size_t dimensions = a.solver.particles.position.size();
+  if (b.solver.particles.position.size() != dimensions) return false;
+  const auto list = fields_in(dimensions);
+  const bool fields = std::all_of(list.begin(), list.end(), [&](const Field& field) {
     return same_bits(field.values.of(a.solver.particles), field.values.of(b.solver.particles));
   });
   return fields && a.scene_hash == b.scene_hash && a.build == b.build &&

@@ -32,9 +32,10 @@ class TemporaryFolder {
 /// A checkpoint with every part filled: `count` particles, values of every kind of double (-0.0,
 /// denormals, extremes), series with and without samples and with dry ones, removed particles.
 [[nodiscard]] Checkpoint make_checkpoint(std::uint64_t step, std::size_t count = 50,
-                                         Integrator integrator = Integrator::modified_leap_frog);
+                                         Integrator integrator = Integrator::modified_leap_frog,
+                                         int dimensions = 2);
 [[nodiscard]] std::vector<SampleTable> make_samples();
-[[nodiscard]] Snapshot make_test_snapshot(std::size_t count);
+[[nodiscard]] Snapshot make_test_snapshot(std::size_t count, int dimensions = 2);
 
 /// Runs `action`, which returns an exit status, in a child process. Its exit status, 99 when it
 /// threw, or -1 when a signal ended it.

@@ -56,7 +56,7 @@ FORBIDDEN_IN = {
 # and vectors are walked. Pictures and the documents of scenes and files have axes; exact solutions are of the plane.
 KNOWS_AXES = ("engine/space/", "engine/sph/", "engine/scene/geometry/", "engine/scene/filling/",
               "engine/draw/", "engine/report/picture_svg.", "engine/report/animation.",
-              "engine/scene/format/", "engine/store/files/snapshot_io.hpp", "engine/verify/", "tests/")
+              "engine/scene/format/", "engine/store/files/snapshot_io.cpp", "engine/verify/", "tests/")
 AXIS = re.compile(r"(?:\.|->)[xyz]\(\)|\bv[xyz]\b|\b(?:position|velocity|acceleration)\w*\[\d\]|\.origin_[xyz]\b")
 
 TOP_LEVEL = {

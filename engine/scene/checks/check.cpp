@@ -25,9 +25,11 @@ constexpr double kMaxFrames = 1e5;
 // Below this the fluid's own weight compresses it by a quarter.
 constexpr double kMinSoundRatio = 2.0;
 
+bool falls(const WrittenScene& written) { return written.gravity && !written.gravity->isZero(0.0); }
+
 void check_gravity(const WrittenScene& written, Problems& problems) {
   if (!problems.clean({"/gravity", "/material"}) || written.sound_speed) return;
-  if (written.gravity.value_or(Vec::Zero()).isZero(0.0)) {
+  if (!falls(written)) {
     problems.add("/material/sound_speed",
                  "is missing; must be given where there is no gravity to derive it from: about "
                  "ten times the largest flow speed");
@@ -68,7 +70,8 @@ void check_particle_count(const Scene& scene, Problems& problems) {
                fmt::format("is {:.6g} m, which makes {:.3g} fluid and {:.3g} solid particles; at "
                            "most {:.3g} in all; a spacing near {:.3g} m is possible",
                            scene.method.spacing, fluid, solid, kMaxParticles,
-                           scene.method.spacing * std::sqrt((fluid + solid) / kMaxParticles)));
+                           scene.method.spacing * std::pow((fluid + solid) / kMaxParticles,
+                                                           1.0 / scene.dimensions())));
 }
 
 void check_names(const Scene& scene, Problems& problems) {
@@ -93,7 +96,7 @@ void check_sensor(const Sensor& sensor, const std::string& pointer, const Scene&
                  fmt::format("is ({:.6g}) m; must lie in /domain, {}",
                              fmt::join(sensor.position, ", "), show(domain)));
   }
-  for (const int axis : kFloorAxes) {
+  for (const int axis : floor_axes(scene.dimensions())) {
     const double along = sensor.position[axis];
     if (!line || (along >= domain.min[axis] && along <= domain.max[axis])) continue;
     problems.add(at(pointer, axis_name(axis)),
@@ -222,7 +225,7 @@ void check_curve(const ReferenceCurve& curve, const std::string& pointer, const 
 void check_reference(const WrittenScene& written, Problems& problems) {
   const auto& reference = written.scene.reference;
   if (!reference || !problems.clean({"/reference", "/sensors"})) return;
-  const bool scaled = written.scene.scales && !written.gravity.value_or(Vec::Zero()).isZero(0.0);
+  const bool scaled = written.scene.scales && falls(written);
   const bool wants_scales = reference->kind == ReferenceKind::experiment ||
                             (reference->kind == ReferenceKind::series &&
                              reference->units == ReferenceUnits::dimensionless);

@@ -21,7 +21,7 @@ constexpr double kSlitLength = 3.0;
 constexpr double kSlitTaper = 0.25;
 
 /// How far it is from a place on one region straight to another, m, if that is less than a spacing.
-std::optional<double> gap_to(const Shape& other, const OutlinePoint& from, double spacing) {
+std::optional<double> gap_to(const ShapeN<2>& other, const OutlinePoint& from, double spacing) {
   for (const double t : chords(other, from.place, from.out)) {
     if (t < kTouching * spacing) continue;
     const bool touches = contains(other, from.place + kTouching * spacing * from.out);
@@ -31,7 +31,7 @@ std::optional<double> gap_to(const Shape& other, const OutlinePoint& from, doubl
 }
 
 /// The first slit along an outline to another region.
-std::optional<Narrow> slit_to(const Shape& other, const std::vector<OutlinePoint>& outline,
+std::optional<Narrow> slit_to(const ShapeN<2>& other, const std::vector<OutlinePoint>& outline,
                               double spacing) {
   std::optional<Narrow> begin;
   for (const OutlinePoint& point : outline) {
@@ -46,13 +46,14 @@ std::optional<Narrow> slit_to(const Shape& other, const std::vector<OutlinePoint
 }  // namespace
 
 void warn_of_gaps(const Scene& scene, Problems& warnings) {
+  if (scene.dimensions() != 2) return;
   const double dx = scene.method.spacing;
   for (std::size_t i = 1; i < scene.fluid.size(); ++i) {
-    const Box box = grown(bounds(scene.fluid[i].shape), dx);
-    const auto points =
-        outline(scene.fluid[i].shape, dx / 2, kMostRegionPoints / scene.fluid.size());
+    const ShapeN<2> region = shape_as<2>(scene.fluid[i].shape);
+    const Box2 box = grown(bounds(region), dx);
+    const auto points = outline(region, dx / 2, kMostRegionPoints / scene.fluid.size());
     for (std::size_t other = 0; other < i; ++other) {
-      const Shape& shape = scene.fluid[other].shape;
+      const ShapeN<2> shape = shape_as<2>(scene.fluid[other].shape);
       if (!overlap(bounds(shape), box)) continue;
       const auto slit = slit_to(shape, points, dx);
       if (!slit) continue;

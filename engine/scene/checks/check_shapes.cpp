@@ -45,8 +45,8 @@ void check_domain_holds(const Scene& scene, const WrittenScene& written, Problem
   if (scene.tank) {
     const double walls = static_cast<double>(wall_layers(scene.method)) * scene.method.spacing;
     const double lid = scene.tank->open_top ? 0.0 : walls;
-    const Box solid{Vec::Constant(-walls),
-                    Vec(scene.tank->width + walls, scene.tank->height + lid)};
+    Box solid = grown(scene.tank->interior(), walls);
+    solid.max[kUpAxis] = scene.tank->height + lid;
     if (!within(solid, domain)) {
       problems.add("/domain", fmt::format("is {}; must hold the tank and its walls, {}",
                                           show(domain), show(solid)));
@@ -92,13 +92,19 @@ void check_sizes(const Scene& scene, Problems& problems) {
     check_size(pointer, bounds(shape).size());
   });
   if (scene.tank && problems.clean({"/tank"})) {
-    check_size("/tank", Vec(scene.tank->width, scene.tank->height));
+    check_size("/tank", scene.tank->size());
   }
 }
 
 void check_tank(const Scene& scene, Problems& problems) {
   if (!scene.tank || !problems.clean({"/tank"})) return;
-  const Box inside{Vec::Zero(), Vec(scene.tank->width, scene.tank->height)};
+  if (dimensions_of(scene.tank->size()) != scene.dimensions()) {
+    problems.add("/tank/depth", scene.tank->depth
+                                    ? "is given; must be left out in a scene of 2 dimensions"
+                                    : "is missing; must be given in a scene of 3 dimensions");
+    return;
+  }
+  const Box inside = scene.tank->interior();
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
     if (within(bounds(shape), inside)) return;
     problems.add(pointer, fmt::format("reaches from {}; must lie inside /tank, {}",
@@ -112,9 +118,8 @@ void check_gate(const Scene& scene, Problems& problems) {
     problems.add("/gate", "stands in no tank; add the key tank or remove the gate");
     return;
   }
-  const Shape body = gate_body(*scene.gate, scene.method);
-  const Box place = bounds(body);
-  const Box inside{Vec::Zero(), Vec(scene.tank->width, scene.tank->height)};
+  const Box place = bounds(gate_body(scene));
+  const Box inside = scene.tank->interior();
   if (!within(place, inside)) {
     problems.add("/gate", fmt::format("reaches from {}; must lie inside /tank, {}", show(place),
                                       show(inside)));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/scene/checks/check_solids_in_space.hpp"
 #include "engine/scene/geometry/narrow_part.hpp"
 #include "engine/scene/geometry/solids.hpp"
 #include "engine/scene/geometry/thin_solids.hpp"
@@ -23,6 +24,8 @@ constexpr int kMostTries = 8;
 constexpr double kFinest = 20;  // of this part of a spacing none is advised
 constexpr int kLinePoints = 256;
 
+using Solids = SolidsN<2>;
+
 /// A length in m and in spacings, with its place.
 std::string size_text(const Narrow& narrow, double spacing) {
   return fmt::format("{:.3g} m, {:.2g} spacings, at ({:.4g}) m", narrow.width,
@@ -36,8 +39,9 @@ std::string spacing_text(double width, double count) {
 
 std::optional<Narrow> thin_part(const Scene& scene, const Solids& solids, std::size_t i,
                                 double dx) {
-  return thin_part(solids,
-                   outline(scene.obstacles[i], dx / 4, kMostPoints / scene.obstacles.size()), dx);
+  return thin_part(
+      solids,
+      outline(shape_as<2>(scene.obstacles[i]), dx / 4, kMostPoints / scene.obstacles.size()), dx);
 }
 
 /// The spacing at which an obstacle that is too thin would be thick enough, as text; "" if there is
@@ -71,7 +75,8 @@ void check_obstacle(const Scene& scene, const Solids& solids, std::size_t i, Pro
                     Problems& warnings) {
   const double dx = scene.method.spacing;
   const std::string pointer = at("/obstacles", i);
-  const auto points = outline(scene.obstacles[i], dx / 4, kMostPoints / scene.obstacles.size());
+  const auto points =
+      outline(shape_as<2>(scene.obstacles[i]), dx / 4, kMostPoints / scene.obstacles.size());
   const auto narrow = [&](Across across, double spacings) {
     return narrow_part(solids, points, across, spacings * kAlike * dx, dx);
   };
@@ -94,7 +99,8 @@ void check_obstacle(const Scene& scene, const Solids& solids, std::size_t i, Pro
   }
 }
 
-void check_point(const Sensor& sensor, const Scene& scene, const Solids& solids,
+template <int Dim>
+void check_point(const Sensor& sensor, const Scene& scene, const SolidsN<Dim>& solids,
                  const std::string& pointer, Problems& warnings) {
   const double half = kOnFace * scene.method.spacing;
   // One at a seam looks as deep as it is, but not endlessly far.
@@ -109,12 +115,14 @@ void check_point(const Sensor& sensor, const Scene& scene, const Solids& solids,
 }
 
 /// Whether some point over a place on the floor is in no solid. On a face, the open is on one side.
-bool is_open_somewhere_over(Vec place, const Box& interior, const Solids& solids, double half) {
+template <int Dim>
+bool is_open_somewhere_over(VecN<Dim> place, const BoxN<Dim>& interior, const SolidsN<Dim>& solids,
+                            double half) {
   for (int k = 0; k < kLinePoints; ++k) {
     place[kUpAxis] = (k + 0.5) / kLinePoints * interior.max[kUpAxis];
-    for (const int axis : kFloorAxes) {
+    for (const int axis : floor_axes(Dim)) {
       for (const double aside : {-half, half}) {
-        Vec beside = place;
+        VecN<Dim> beside = place;
         beside[axis] += aside;
         if (!solids.holds(beside)) return true;
       }
@@ -123,12 +131,13 @@ bool is_open_somewhere_over(Vec place, const Box& interior, const Solids& solids
   return false;
 }
 
-void check_line(const Sensor& sensor, const Scene& scene, const Solids& solids,
+template <int Dim>
+void check_line(const Sensor& sensor, const Scene& scene, const SolidsN<Dim>& solids,
                 const std::string& pointer, Problems& warnings) {
   if (!scene.tank) return;
   const double half = kOnFace * scene.method.spacing;
-  const Box interior = scene.tank->interior();
-  for (const int axis : kFloorAxes) {
+  const BoxN<Dim> interior = scene.tank->interior();
+  for (const int axis : floor_axes(Dim)) {
     const double along = sensor.position[axis];
     const double length = interior.max[axis];
     if (along >= -half && along <= length + half) continue;
@@ -138,41 +147,47 @@ void check_line(const Sensor& sensor, const Scene& scene, const Solids& solids,
                              along, length));
     return;
   }
-  if (is_open_somewhere_over(sensor.position, interior, solids, half)) return;
-  warnings.add(at(pointer, axis_name(kFloorAxes.front())),
+  if (is_open_somewhere_over<Dim>(sensor.position, interior, solids, half)) return;
+  warnings.add(at(pointer, axis_name(floor_axes(Dim).front())),
                fmt::format("is {:.6g} m, where obstacles fill the tank from the floor to the rim: "
                            "no surface is there; move it",
-                           sensor.position[kFloorAxes.front()]));
+                           sensor.position[floor_axes(Dim).front()]));
 }
 
-}  // namespace
-
-void check_solids(const Scene& scene, Problems& problems, Problems& warnings) {
-  const Solids solids = solids_of(scene);
-  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-    check_obstacle(scene, solids, i, problems, warnings);
-  }
-}
-
-void check_sensor_places(const Scene& scene, Problems& warnings) {
-  const Solids solids = solids_of(scene);
+template <int Dim>
+void check_places(const Scene& scene, Problems& warnings) {
+  const SolidsN<Dim> solids = solids_of<Dim>(scene);
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const Sensor& sensor = scene.sensors[i];
     const std::string pointer = at("/sensors", i);
     switch (sensor.kind) {
       case SensorKind::pressure:
       case SensorKind::arrival:
-        check_point(sensor, scene, solids, pointer, warnings);
+        check_point<Dim>(sensor, scene, solids, pointer, warnings);
         break;
       case SensorKind::surface_height:
       case SensorKind::column_height:
-        check_line(sensor, scene, solids, pointer, warnings);
+        check_line<Dim>(sensor, scene, solids, pointer, warnings);
         break;
       case SensorKind::surge_front:
       case SensorKind::energy:
         break;
     }
   }
+}
+
+}  // namespace
+
+void check_solids(const Scene& scene, Problems& problems, Problems& warnings) {
+  if (scene.dimensions() == 3) return check_solids_in_space(scene, problems, warnings);
+  const Solids solids = solids_of<2>(scene);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    check_obstacle(scene, solids, i, problems, warnings);
+  }
+}
+
+void check_sensor_places(const Scene& scene, Problems& warnings) {
+  in_dimensions(scene.dimensions(), [&]<int Dim>() { check_places<Dim>(scene, warnings); });
 }
 
 }  // namespace sluice

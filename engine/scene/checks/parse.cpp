@@ -32,6 +32,23 @@ std::optional<Scheme> named_scheme(const json& numerics) {
   return std::nullopt;
 }
 
+/// The number of dimensions that a scene names, or that of its first fluid's shape: what does not
+/// fit is found by the Reader.
+int named_dimensions(const json& scene) {
+  if (!scene.is_object()) return kPlaneDim;
+  const auto named = scene.find("dimensions");
+  for (const int known : {kPlaneDim, kMostDim}) {
+    if (named != scene.end() && *named == known) return known;
+  }
+  const json fluid = scene.value("fluid", json());
+  if (!fluid.is_array() || fluid.empty() || !fluid.front().is_object()) return kPlaneDim;
+  const json word = fluid.front().value("shape", json());
+  for (const auto& each : kShapeWords) {
+    if (word == each.word) return dimensions_of(shape_of(each.value));
+  }
+  return kPlaneDim;
+}
+
 std::vector<std::string> pointers_of(const json& numerics) {
   std::vector<std::string> pointers;
   if (numerics.empty()) return pointers;
@@ -43,9 +60,10 @@ std::vector<std::string> pointers_of(const json& numerics) {
 }
 
 WrittenScene read_written(const json& scene, std::optional<Scheme> scheme, Problems& problems) {
-  WrittenScene written(scheme);
+  const int dimensions = named_dimensions(scene);
+  WrittenScene written(scheme, dimensions);
   written.scene.numerics.named = pointers_of(numerics_of(scene));
-  Reader reader(scene, "", problems);
+  Reader reader(scene, "", problems, dimensions);
   describe(reader, written);
   reader.finish();
   leave_out_excluded(written.scene.method, written.scene.numerics);

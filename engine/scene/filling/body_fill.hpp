@@ -53,9 +53,8 @@ class BodyFillN {
   double spacing_;
 };
 
-using BodyFill = BodyFillN<kDim>;
-
-/// The fluid of a scene among all that stands in its tank.
-[[nodiscard]] BodyFill body_fill_of(const Scene& scene);
+/// The fluid of a scene of as many dimensions among all that stands in its tank.
+template <int Dim>
+[[nodiscard]] BodyFillN<Dim> body_fill_of(const Scene& scene);
 
 }  // namespace sluice

@@ -64,6 +64,4 @@ class CellSetN {
   std::vector<Run> runs_;  ///< by row, then along it; apart from one another
 };
 
-using CellSet = CellSetN<kDim>;
-
 }  // namespace sluice

@@ -20,16 +20,16 @@ constexpr double kCurved = 0.85;      // cosine of the turn up to which faces ar
 constexpr double kStraight = 0.02;    // sine of a turn that is none
 
 struct Face {
-  Vec begin = Vec::Zero();
-  Vec along = Vec::Zero();
-  Vec in = Vec::Zero();
+  Vec2 begin = Vec2::Zero();
+  Vec2 along = Vec2::Zero();
+  Vec2 in = Vec2::Zero();
   double length = 0.0;
   bool open = true;
 };
 
 /// A part of a layer along faces without a sharp corner between them.
 struct Strip {
-  std::vector<Vec> points;
+  std::vector<Vec2> points;
   bool from_corner = true;  ///< else it begins at a covered face, where half a cell stays free
   bool to_corner = true;
 };
@@ -37,20 +37,20 @@ struct Strip {
 class FaceLayers {
  public:
   FaceLayers(const Polygon& polygon, const Method& method,
-             const std::function<bool(const Vec&)>& covered)
+             const std::function<bool(const Vec2&)>& covered)
       : polygon_(polygon),
         dx_(method.spacing),
         layers_(wall_layers(method)),
         covered_(covered),
         made_(dx_) {
-    std::vector<Vec> corners = polygon.points;
+    std::vector<Vec2> corners = polygon.points;
     if (twice_signed_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vec edge = corners[(i + 1) % corners.size()] - corners[i];
-      const Vec along = edge.normalized();
-      Face face{corners[i], along, Vec(-along.y(), along.x()), edge.norm(), true};
+      const Vec2 edge = corners[(i + 1) % corners.size()] - corners[i];
+      const Vec2 along = edge.normalized();
+      Face face{corners[i], along, Vec2(-along.y(), along.x()), edge.norm(), true};
       face.open = !all_along(
-          face, [&](const Vec& place) { return covered_(place - kLayerSlack * dx_ * face.in); });
+          face, [&](const Vec2& place) { return covered_(place - kLayerSlack * dx_ * face.in); });
       faces_.push_back(face);
     }
   }
@@ -60,7 +60,7 @@ class FaceLayers {
   [[nodiscard]] bool is_thick() const {
     const double enough = (2.0 * static_cast<double>(layers_) - 1.0 - kLayerSlack) * dx_;
     return std::all_of(faces_.begin(), faces_.end(), [&](const Face& face) {
-      return !face.open || all_along(face, [&](const Vec& place) {
+      return !face.open || all_along(face, [&](const Vec2& place) {
         for (const double way : chords(polygon_, place, face.in)) {
           if (way < kLayerSlack * dx_) continue;
           return way > enough || covered_(place + (way + kLayerSlack * dx_) * face.in);
@@ -70,7 +70,7 @@ class FaceLayers {
     });
   }
 
-  std::vector<Vec> make() {
+  std::vector<Vec2> make() {
     for (double k = 0; k < static_cast<double>(layers_); ++k) add_layer((k + 0.5) * dx_);
     return made_.take();
   }
@@ -89,9 +89,9 @@ class FaceLayers {
   [[nodiscard]] const Face& next(std::size_t i) const { return faces_[(i + 1) % faces_.size()]; }
 
   /// Where the lines of two faces in turn meet, each moved in by `depth` if it is open.
-  [[nodiscard]] Vec meet(const Face& a, const Face& b, double depth) const {
+  [[nodiscard]] Vec2 meet(const Face& a, const Face& b, double depth) const {
     const double a_depth = a.open ? depth : 0.0, b_depth = b.open ? depth : 0.0;
-    const Vec foot = b.begin + (a.open ? a_depth * a.in : b_depth * b.in);
+    const Vec2 foot = b.begin + (a.open ? a_depth * a.in : b_depth * b.in);
     const double turn = a.along.dot(b.in);
     if (std::abs(turn) < kStraight) return foot;
     const double back = -a.length - b.length, past = kFarthest * dx_;
@@ -139,7 +139,7 @@ class FaceLayers {
     const double step = count + ends > 0 ? std::max(length / (count + ends), dx_ / 4) : dx_;
     double wanted = strip.from_corner ? 0.0 : step / 2, done = 0.0;
     for (std::size_t i = 1; i < strip.points.size(); ++i) {
-      const Vec way = strip.points[i] - strip.points[i - 1];
+      const Vec2 way = strip.points[i] - strip.points[i - 1];
       for (; wanted <= done + way.norm() + kLayerSlack * dx_; wanted += step) {
         add(strip.points[i - 1] + (wanted - done) * way.normalized(), depth);
       }
@@ -147,7 +147,7 @@ class FaceLayers {
     }
   }
 
-  void add(const Vec& point, double depth) {
+  void add(const Vec2& point, double depth) {
     if (!contains(polygon_, point)) return;
     for (const Face& face : faces_) {
       if (!face.open) continue;
@@ -161,15 +161,15 @@ class FaceLayers {
   const Shape polygon_;
   double dx_;
   std::int64_t layers_;
-  const std::function<bool(const Vec&)>& covered_;
+  const std::function<bool(const Vec2&)>& covered_;
   std::vector<Face> faces_;
   ApartPoints<2> made_;
 };
 
 }  // namespace
 
-std::optional<std::vector<Vec>> face_layers(const Polygon& polygon, const Method& method,
-                                            const std::function<bool(const Vec&)>& covered) {
+std::optional<std::vector<Vec2>> face_layers(const Polygon& polygon, const Method& method,
+                                             const std::function<bool(const Vec2&)>& covered) {
   FaceLayers layers(polygon, method, covered);
   if (!layers.is_thick()) return std::nullopt;
   return layers.make();

@@ -15,7 +15,7 @@ namespace sluice {
 ///
 /// `covered` says whether a place just outside a face is solid: such a face has no layers. Nothing
 /// where the polygon is so thin that the layers of two faces would meet.
-[[nodiscard]] std::optional<std::vector<Vec>> face_layers(
-    const Polygon& polygon, const Method& method, const std::function<bool(const Vec&)>& covered);
+[[nodiscard]] std::optional<std::vector<Vec2>> face_layers(
+    const Polygon& polygon, const Method& method, const std::function<bool(const Vec2&)>& covered);
 
 }  // namespace sluice

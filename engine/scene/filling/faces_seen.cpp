@@ -1,5 +1,6 @@
 #include "engine/scene/filling/faces_seen.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/scene/filling/cells.hpp"
@@ -16,12 +17,12 @@ bool is_whole(double cells) { return std::abs(cells - std::round(cells)) < kOffL
 
 /// Whether a rectangle's cells, stretched to fit, are about as large as the fluid's. Each of its
 /// dummy particles has a full mass, whatever the size of its cell.
-bool has_full_cells(const Rectangle& solid, double dx) {
-  const auto fits = [dx](double length) {
+template <int Dim>
+bool has_full_cells(const Cuboid<Dim>& solid, double dx) {
+  return std::all_of(solid.size.begin(), solid.size.end(), [dx](double length) {
     const double cells = static_cast<double>(whole_cells(length, dx));
     return std::abs(cells * dx / length - 1.0) <= kOffArea;
-  };
-  return fits(solid.size.x()) && fits(solid.size.y());
+  });
 }
 
 void face_outline(const std::vector<Point>& points, const Point& point, double dx,
@@ -42,6 +43,11 @@ void face_outline(const std::vector<Point>& points, const Point& point, double d
   }
 }
 
+template <int Dim>
+std::vector<SeenFace> round_face(const ShapeN<Dim>& solid, const VecN<Dim>& point, double dx) {
+  return {{std::abs(signed_distance(solid, point)) / dx, false, true, kSolid}};
+}
+
 /// The faces of a solid that a point faces. A shape without a line of its own does not compile.
 struct FacesSeenFrom {
   const Point& point;
@@ -53,16 +59,39 @@ struct FacesSeenFrom {
     return found;
   }
   std::vector<SeenFace> operator()(const Polygon& s) const { return outline(s.points); }
-  std::vector<SeenFace> operator()(const Circle& s) const { return round(s); }
-  std::vector<SeenFace> operator()(const Ellipse& s) const { return round(s); }
+  std::vector<SeenFace> operator()(const Circle& s) const { return round_face<2>(s, point, dx); }
+  std::vector<SeenFace> operator()(const Ellipse& s) const { return round_face<2>(s, point, dx); }
 
   [[nodiscard]] std::vector<SeenFace> outline(const std::vector<Point>& points) const {
     std::vector<SeenFace> found;
     face_outline(points, point, dx, found);
     return found;
   }
-  [[nodiscard]] std::vector<SeenFace> round(const ShapeN<2>& solid) const {
-    return {{std::abs(signed_distance(solid, point)) / dx, false, true, kSolid}};
+};
+
+/// The same in space.
+struct FacesSeenInSpace {
+  const VecN<3>& point;
+  double dx;
+
+  std::vector<SeenFace> operator()(const Cuboid<3>& s) const {
+    std::vector<SeenFace> found;
+    const VecN<3> from = point - s.corner;
+    for (int axis = 0; axis < 3; ++axis) {
+      bool beside = true;
+      for (int other = 0; other < 3; ++other) {
+        beside = beside && (other == axis || (from[other] >= 0.0 && from[other] <= s.size[other]));
+      }
+      if (!beside) continue;
+      for (const double face : {0.0, s.size[axis]}) {
+        found.push_back({std::abs(from[axis] - face) / dx, true, has_full_cells(s, dx), kSolid});
+      }
+    }
+    return found;
+  }
+  std::vector<SeenFace> operator()(const Ball<3>& s) const { return round_face<3>(s, point, dx); }
+  std::vector<SeenFace> operator()(const Ellipsoid<3>& s) const {
+    return round_face<3>(s, point, dx);
   }
 };
 
@@ -72,7 +101,13 @@ std::vector<SeenFace> faces_seen(const ShapeN<2>& solid, const Point& point, dou
   return std::visit(FacesSeenFrom{point, spacing}, solid);
 }
 
-std::vector<SeenFace> faces_seen(const TankRoomN<2>& tank, const Point& point, double spacing) {
+std::vector<SeenFace> faces_seen(const ShapeN<3>& solid, const VecN<3>& point, double spacing) {
+  return std::visit(FacesSeenInSpace{point, spacing}, solid);
+}
+
+template <int Dim>
+std::vector<SeenFace> faces_seen(const TankRoomN<Dim>& tank, const VecN<Dim>& point,
+                                 double spacing) {
   const auto face = [&](double distance, std::string_view name) {
     return SeenFace{distance / spacing, true, true, name};
   };
@@ -80,7 +115,14 @@ std::vector<SeenFace> faces_seen(const TankRoomN<2>& tank, const Point& point, d
                               face(tank.size.x() - point.x(), "the tank's right wall"),
                               face(point.y(), "the tank's floor")};
   if (!tank.open_top) faces.push_back(face(tank.size.y() - point.y(), "the tank's lid"));
+  if constexpr (Dim == 3) {
+    faces.push_back(face(point.z(), "the tank's wall at z = 0"));
+    faces.push_back(face(tank.size.z() - point.z(), "the tank's wall at its depth"));
+  }
   return faces;
 }
+
+template std::vector<SeenFace> faces_seen(const TankRoomN<2>&, const VecN<2>&, double);
+template std::vector<SeenFace> faces_seen(const TankRoomN<3>&, const VecN<3>&, double);
 
 }  // namespace sluice

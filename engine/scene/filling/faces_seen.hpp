@@ -20,13 +20,16 @@ struct SeenFace {
   std::string_view of;  ///< for messages
 };
 
-/// The faces in the plane of an obstacle or the gate, whose lines a point is beside; of one beside
-/// a corner none.
+/// The faces of an obstacle or the gate that a point is straight beside; of one beside a corner
+/// or an edge none.
 [[nodiscard]] std::vector<SeenFace> faces_seen(const ShapeN<2>& solid, const VecN<2>& point,
                                                double spacing);
+[[nodiscard]] std::vector<SeenFace> faces_seen(const ShapeN<3>& solid, const VecN<3>& point,
+                                               double spacing);
 
-/// The faces of a tank in the plane, seen by a point in it.
-[[nodiscard]] std::vector<SeenFace> faces_seen(const TankRoomN<2>& tank, const VecN<2>& point,
+/// The faces of a tank, seen by a point in it.
+template <int Dim>
+[[nodiscard]] std::vector<SeenFace> faces_seen(const TankRoomN<Dim>& tank, const VecN<Dim>& point,
                                                double spacing);
 
 }  // namespace sluice

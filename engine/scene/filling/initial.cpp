@@ -17,38 +17,41 @@ namespace sluice {
 namespace {
 
 /// Obstacles with their bounding boxes, widened by half a spacing.
+template <int Dim>
 class Displacement {
  public:
-  Displacement(const std::vector<Shape>& obstacles, double spacing)
+  Displacement(const std::vector<ShapeN<Dim>>& obstacles, double spacing)
       // A particle half a spacing above a flat face stays, whatever rounding says.
       : gap_((0.5 - 1e-6) * spacing) {
-    for (const Shape& shape : obstacles) {
-      bodies_.push_back({&shape, grown(bounds(shape), spacing)});
+    for (const ShapeN<Dim>& shape : obstacles) {
+      bodies_.push_back({shape, grown(bounds(shape), spacing)});
     }
   }
 
-  [[nodiscard]] bool takes(const Vec& point) const {
+  [[nodiscard]] bool takes(const VecN<Dim>& point) const {
     return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
-      return body.box.contains(point) && signed_distance(*body.shape, point) < gap_;
+      return body.box.contains(point) && signed_distance(body.shape, point) < gap_;
     });
   }
 
  private:
   struct Body {
-    const Shape* shape;
-    Box box;
+    ShapeN<Dim> shape;
+    BoxN<Dim> box;
   };
   double gap_;
   std::vector<Body> bodies_;
 };
 
-void require_apart(const std::vector<CellSet>& earlier, const Vec& point, std::size_t region) {
+template <int Dim>
+void require_apart(const std::vector<CellSetN<Dim>>& earlier, const VecN<Dim>& point,
+                   std::size_t region) {
   for (std::size_t other = 0; other < earlier.size(); ++other) {
     if (!earlier[other].covers(point)) continue;
     throw SceneError({fmt::format("/fluid/{}", region),
-                      fmt::format("overlaps /fluid/{} at ({:.6g}, {:.6g}) m: particles would lie "
+                      fmt::format("overlaps /fluid/{} at ({:.6g}) m: particles would lie "
                                   "closer than half a spacing; move or shrink one of the two",
-                                  other, point.x(), point.y())});
+                                  other, fmt::join(point, ", "))});
   }
 }
 
@@ -63,28 +66,31 @@ double noise(std::uint64_t seed, std::uint64_t counter) {
 
 void displace(const Perturbation& perturbation, double spacing, Particles& particles) {
   const auto seed = static_cast<std::uint64_t>(perturbation.seed);
+  const std::size_t axes = particles.position.size();
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    for (std::size_t axis = 0; axis < particles.position.size(); ++axis) {
+    for (std::size_t axis = 0; axis < axes; ++axis) {
       particles.position[axis][i] +=
-          perturbation.amplitude * spacing * noise(seed, kDim * i + axis);
+          perturbation.amplitude * spacing * noise(seed, axes * i + axis);
     }
   }
 }
 
 /// Places of the particles of each region.
-using Places = std::vector<std::vector<Vec>>;
+template <int Dim>
+using PlacesN = std::vector<std::vector<VecN<Dim>>>;
 
-Places on_lattice(const Scene& scene) {
-  const std::vector<Shape> bodies = solid_bodies(scene);
-  const Displacement solid(bodies, scene.method.spacing);
-  std::vector<CellSet> earlier;
-  Places places;
+template <int Dim>
+PlacesN<Dim> on_lattice(const Scene& scene) {
+  const Displacement<Dim> solid(shapes_as<Dim>(solid_bodies(scene)), scene.method.spacing);
+  std::vector<CellSetN<Dim>> earlier;
+  PlacesN<Dim> places;
   for (std::size_t i = 0; i < scene.fluid.size(); ++i) {
-    std::vector<Vec>& points = places.emplace_back();
-    CellSet cells(scene.fluid[i].shape, scene.method.spacing, CellFit::exact_spacing);
-    cells.for_each([&](const Vec& point, const auto&) {
+    std::vector<VecN<Dim>>& points = places.emplace_back();
+    CellSetN<Dim> cells(shape_as<Dim>(scene.fluid[i].shape), scene.method.spacing,
+                        CellFit::exact_spacing);
+    cells.for_each([&](const VecN<Dim>& point, const auto&) {
       if (solid.takes(point)) return;
-      require_apart(earlier, point, i);
+      require_apart<Dim>(earlier, point, i);
       points.push_back(point);
     });
     if (points.empty()) {
@@ -97,12 +103,13 @@ Places on_lattice(const Scene& scene) {
   return places;
 }
 
+template <int Dim>
 PackingReport pack_body(const Scene& scene, const Body& body, const std::vector<Vec>& walls,
-                        Places& places) {
-  const BodyFill fill = body_fill_of(scene);
-  std::vector<FixedPoint> fixed = fill.outside(body);
+                        PlacesN<Dim>& places) {
+  const BodyFillN<Dim> fill = body_fill_of<Dim>(scene);
+  std::vector<FixedPointN<Dim>> fixed = fill.outside(body);
   for (const Vec& wall : walls) fixed.push_back({wall, 1.0});
-  std::vector<Vec> points;
+  std::vector<VecN<Dim>> points;
   for (const std::size_t region : body) {
     places[region] = fill.places(region);
     points.insert(points.end(), places[region].begin(), places[region].end());
@@ -110,18 +117,19 @@ PackingReport pack_body(const Scene& scene, const Body& body, const std::vector<
   const PackingReport report = pack(points, fixed, scene.method.spacing);
   auto next = points.begin();
   for (const std::size_t region : body) {
-    for (Vec& point : places[region]) point = *next++;
+    for (VecN<Dim>& point : places[region]) point = *next++;
   }
   return report;
 }
 
 /// Packs every body that its lattice does not fit.
+template <int Dim>
 std::optional<PackingReport> pack_misfits(const Scene& scene, const std::vector<Vec>& walls,
-                                          Places& places) {
+                                          PlacesN<Dim>& places) {
   std::optional<PackingReport> all;
   for (const Body& body : bodies(scene)) {
     if (!lattice_misfit(scene, body)) continue;
-    const PackingReport one = pack_body(scene, body, walls, places);
+    const PackingReport one = pack_body<Dim>(scene, body, walls, places);
     if (!all) all.emplace();
     all->particles += one.particles;
     all->iterations = std::max(all->iterations, one.iterations);
@@ -130,12 +138,13 @@ std::optional<PackingReport> pack_misfits(const Scene& scene, const std::vector<
   return all;
 }
 
-Particles particles_at(const Scene& scene, const Places& places) {
+template <int Dim>
+Particles particles_at(const Scene& scene, const PlacesN<Dim>& places) {
   const WaterLevels levels(scene);
   const double c2 = scene.method.sound_speed * scene.method.sound_speed;
-  Particles particles;
+  Particles particles = no_particles(Dim);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    for (const Vec& point : places[i]) {
+    for (const VecN<Dim>& point : places[i]) {
       particles.id.push_back(static_cast<double>(particles.size()));
       append(particles.position, point);
       append(particles.velocity, velocity_at(scene.fluid[i], point));
@@ -145,27 +154,27 @@ Particles particles_at(const Scene& scene, const Places& places) {
   return particles;
 }
 
-}  // namespace
-
-InitialParticles create_particles(const Scene& scene) {
+template <int Dim>
+InitialParticles initial_particles(const Scene& scene) {
   InitialParticles result;
   result.walls = scene_walls(scene);
-  Places places = on_lattice(scene);
-  result.packing = pack_misfits(scene, result.walls, places);
-  result.state.particles = particles_at(scene, places);
+  PlacesN<Dim> places = on_lattice<Dim>(scene);
+  result.packing = pack_misfits<Dim>(scene, result.walls, places);
+  result.state.particles = particles_at<Dim>(scene, places);
   if (scene.perturbation)
     displace(*scene.perturbation, scene.method.spacing, result.state.particles);
   return result;
 }
 
-StartPlan start_plan(const Scene& scene) {
-  const Places places = on_lattice(scene);
+template <int Dim>
+StartPlan plan_of_start(const Scene& scene) {
+  const PlacesN<Dim> places = on_lattice<Dim>(scene);
   StartPlan plan;
   for (const Body& body : bodies(scene)) {
     const std::optional<std::string> misfit = lattice_misfit(scene, body);
     if (misfit && !plan.packed) plan.reason = *misfit;
     plan.packed = plan.packed || misfit.has_value();
-    const BodyFill fill = body_fill_of(scene);
+    const BodyFillN<Dim> fill = body_fill_of<Dim>(scene);
     for (const std::size_t region : body) {
       plan.fluid_particles += misfit ? fill.count(region) : places[region].size();
     }
@@ -173,9 +182,20 @@ StartPlan start_plan(const Scene& scene) {
   return plan;
 }
 
+}  // namespace
+
+InitialParticles create_particles(const Scene& scene) {
+  return in_dimensions(scene.dimensions(),
+                       [&]<int Dim>() { return initial_particles<Dim>(scene); });
+}
+
+StartPlan start_plan(const Scene& scene) {
+  return in_dimensions(scene.dimensions(), [&]<int Dim>() { return plan_of_start<Dim>(scene); });
+}
+
 std::optional<Problem> problem_when_filled(const Scene& scene) {
   try {
-    (void)on_lattice(scene);
+    in_dimensions(scene.dimensions(), [&]<int Dim>() { (void)on_lattice<Dim>(scene); });
     return std::nullopt;
   } catch (const SceneError& error) {
     return error.problem();

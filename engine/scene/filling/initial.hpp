@@ -14,7 +14,7 @@ namespace sluice {
 
 /// What a run starts from.
 struct InitialParticles {
-  SolverState state;                     ///< only x, y, vx, vy, density_excess and id are filled
+  SolverState state;                     ///< only positions, velocities, density_excess and id
   std::vector<Vec> walls;                ///< dummy particles of the tank, then of the obstacles, m
   std::optional<PackingReport> packing;  ///< absent where all fluid lies on its lattice
 };

@@ -14,21 +14,25 @@
 namespace sluice {
 namespace {
 
+template <int Dim>
 class FitCheck {
  public:
+  using Point = VecN<Dim>;
+
   FitCheck(const Scene& scene, const Body& body)
       : scene_(scene),
         body_(body),
         dx_(scene.method.spacing),
-        tank_(room_of(scene)),
-        solids_(solid_bodies(scene)) {
-    for (const Shape& solid : solids_) boxes_.push_back(grown(bounds(solid), dx_));
+        tank_(room_of<Dim>(scene)),
+        solids_(shapes_as<Dim>(solid_bodies(scene))) {
+    for (const ShapeN<Dim>& solid : solids_) boxes_.push_back(grown(bounds(solid), dx_));
   }
 
   std::optional<std::string> misfit() {
     for (const std::size_t region : body_) {
-      const CellSet cells(scene_.fluid[region].shape, dx_, CellFit::exact_spacing);
-      cells.for_each([&](const Vec& point, const auto&) {
+      const CellSetN<Dim> cells(shape_as<Dim>(scene_.fluid[region].shape), dx_,
+                                CellFit::exact_spacing);
+      cells.for_each([&](const Point& point, const auto&) {
         if (!reason_) visit(point);
       });
       if (reason_) return reason_;
@@ -39,7 +43,7 @@ class FitCheck {
   }
 
  private:
-  void visit(const Vec& point) {
+  void visit(const Point& point) {
     if (tank_) judge(faces_seen(*tank_, point, dx_), point);
     bool inside = false;
     std::vector<SeenFace> found;
@@ -55,29 +59,29 @@ class FitCheck {
     judge(found, point);
   }
 
-  void judge(const std::vector<SeenFace>& faces, const Vec& point) {
+  void judge(const std::vector<SeenFace>& faces, const Point& point) {
     for (const SeenFace& face : faces) judge(face, point);
   }
 
-  void judge(const SeenFace& face, const Vec& point) {
+  void judge(const SeenFace& face, const Point& point) {
     if (face.distance > 1.0 + kOffLattice) return;
     touches_ = true;
     if (reason_) return;
     const bool met = face.along_lattice && std::abs(face.distance - 0.5) < kOffLattice;
     if (met && face.backed) return;
-    reason_ = fmt::format("the lattice does not fit {}{} at ({:.6g}, {:.6g}) m",
-                          met ? "the particles in " : "", face.of, point.x(), point.y());
+    reason_ = fmt::format("the lattice does not fit {}{} at ({:.6g}) m",
+                          met ? "the particles in " : "", face.of, fmt::join(point, ", "));
   }
 
-  [[nodiscard]] Vec phase(std::size_t region) const {
-    const auto* rectangle = std::get_if<Rectangle>(&scene_.fluid[region].shape);
-    return rectangle != nullptr ? Vec(rectangle->corner / dx_) : Vec(Vec::Zero());
+  [[nodiscard]] Point phase(std::size_t region) const {
+    const auto* cuboid = std::get_if<Cuboid<Dim>>(&scene_.fluid[region].shape);
+    return cuboid != nullptr ? Point(cuboid->corner / dx_) : Point(Point::Zero());
   }
 
   [[nodiscard]] std::optional<std::string> steps_apart() const {
     for (const std::size_t region : body_) {
-      const Vec apart = phase(region) - phase(body_.front());
-      const Vec off = apart - apart.array().round().matrix();
+      const Point apart = phase(region) - phase(body_.front());
+      const Point off = apart - apart.array().round().matrix();
       if (off.cwiseAbs().maxCoeff() < kOffLattice) continue;
       return fmt::format("/fluid/{} does not meet /fluid/{} on its lattice", region, body_.front());
     }
@@ -85,7 +89,7 @@ class FitCheck {
   }
 
   [[nodiscard]] std::optional<std::string> wrong_area() const {
-    const BodyFill fill = body_fill_of(scene_);
+    const BodyFillN<Dim> fill = body_fill_of<Dim>(scene_);
     std::size_t wanted = 0;
     for (const std::size_t region : body_) wanted += fill.count(region);
     const double share = static_cast<double>(count_) / static_cast<double>(wanted) - 1.0;
@@ -96,40 +100,49 @@ class FitCheck {
   const Scene& scene_;
   const Body& body_;
   double dx_;
-  std::optional<TankRoom> tank_;
-  std::vector<Shape> solids_;
-  std::vector<Box> boxes_;
+  std::optional<TankRoomN<Dim>> tank_;
+  std::vector<ShapeN<Dim>> solids_;
+  std::vector<BoxN<Dim>> boxes_;
   std::size_t count_ = 0;
   bool touches_ = false;
   std::optional<std::string> reason_;
 };
 
-}  // namespace
-
-std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body) {
-  return FitCheck(scene, body).misfit();
-}
-
-std::vector<bool> beside_misfits(const Scene& scene) {
+template <int Dim>
+std::vector<bool> obstacles_beside_misfits(const Scene& scene) {
   const double reach = 1.5 * scene.method.spacing;
   std::vector<bool> beside(scene.obstacles.size());
-  if (beside.empty()) return beside;
+  const std::vector<ShapeN<Dim>> obstacles = shapes_as<Dim>(scene.obstacles);
   for (const Body& body : bodies(scene)) {
     if (!lattice_misfit(scene, body)) continue;
     for (const std::size_t region : body) {
-      const CellSet cells(scene.fluid[region].shape, scene.method.spacing, CellFit::exact_spacing);
+      const ShapeN<Dim> fluid = shape_as<Dim>(scene.fluid[region].shape);
+      const CellSetN<Dim> cells(fluid, scene.method.spacing, CellFit::exact_spacing);
       for (std::size_t i = 0; i < beside.size(); ++i) {
         if (beside[i]) continue;
-        const Box box = grown(bounds(scene.obstacles[i]), reach);
-        if (!overlap(bounds(scene.fluid[region].shape), box)) continue;
-        cells.for_each([&](const Vec& point, const auto&) {
+        const BoxN<Dim> box = grown(bounds(obstacles[i]), reach);
+        if (!overlap(bounds(fluid), box)) continue;
+        cells.for_each([&](const VecN<Dim>& point, const auto&) {
           if (beside[i] || !box.contains(point)) return;
-          beside[i] = std::abs(signed_distance(scene.obstacles[i], point)) < reach;
+          beside[i] = std::abs(signed_distance(obstacles[i], point)) < reach;
         });
       }
     }
   }
   return beside;
+}
+
+}  // namespace
+
+std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body) {
+  return in_dimensions(scene.dimensions(),
+                       [&]<int Dim>() { return FitCheck<Dim>(scene, body).misfit(); });
+}
+
+std::vector<bool> beside_misfits(const Scene& scene) {
+  if (scene.obstacles.empty()) return {};
+  return in_dimensions(scene.dimensions(),
+                       [&]<int Dim>() { return obstacles_beside_misfits<Dim>(scene); });
 }
 
 }  // namespace sluice

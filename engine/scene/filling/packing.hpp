@@ -13,7 +13,6 @@ struct FixedPointN {
   VecN<Dim> position = VecN<Dim>::Zero();  ///< m
   double volume = 1.0;                     ///< in dx^d
 };
-using FixedPoint = FixedPointN<kDim>;
 
 /// How a packing ended.
 struct PackingReport {

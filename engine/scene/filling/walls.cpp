@@ -12,10 +12,10 @@
 namespace sluice {
 namespace {
 
-/// Whether a place is solid but for one obstacle. A gate leaves.
-bool is_covered(const Scene& scene, std::size_t but, const Vec& point) {
+/// Whether a place of the plane is solid but for one obstacle. A gate leaves.
+bool is_covered(const Scene& scene, std::size_t but, const Vec2& point) {
   if (scene.tank) {
-    const TankRoom tank = room_of(*scene.tank);
+    const TankRoomN<2> tank = room_of<2>(*scene.tank);
     if (tank.aside(point) > 0.0 || point[kUpAxis] < 0.0) return true;
     if (!tank.open_top && tank.over(point) > 0.0) return true;
   }
@@ -33,6 +33,33 @@ std::optional<Polygon> straight_outline_of(const Shape& shape) {
 
 WallLayers layers_of(const Method& method) { return {method.spacing, wall_layers(method)}; }
 
+template <int Dim>
+std::vector<Vec> as_any(const std::vector<VecN<Dim>>& points) {
+  return {points.begin(), points.end()};
+}
+
+/// Layers along the faces of an obstacle of the plane that fluid touches whose lattice does not fit
+/// it.
+std::optional<std::vector<Vec2>> face_layers_of(const Scene& scene, const std::vector<bool>& beside,
+                                                std::size_t i) {
+  if (i >= beside.size() || !beside[i]) return std::nullopt;
+  const std::optional<Polygon> polygon = straight_outline_of(scene.obstacles[i]);
+  if (!polygon) return std::nullopt;
+  return face_layers(*polygon, scene.method,
+                     [&](const Vec2& point) { return is_covered(scene, i, point); });
+}
+
+template <int Dim>
+std::vector<Vec> solid_walls(const Scene& scene) {
+  const std::vector<bool> beside = beside_misfits(scene);
+  const auto own = [&](std::size_t i) -> std::optional<std::vector<VecN<Dim>>> {
+    if constexpr (Dim == 2) return face_layers_of(scene, beside, i);
+    return std::nullopt;
+  };
+  return as_any<Dim>(
+      walls_of_solids<Dim>(shapes_as<Dim>(solid_bodies(scene)), layers_of(scene.method), own));
+}
+
 }  // namespace
 
 std::int64_t wall_layers(const Method& method) {
@@ -42,44 +69,45 @@ std::int64_t wall_layers(const Method& method) {
 }
 
 std::vector<Vec> tank_walls(const Tank& tank, const Method& method) {
-  return walls_around(room_of(tank), layers_of(method));
+  return in_dimensions(method.dimensions(), [&]<int Dim>() {
+    return as_any<Dim>(walls_around(room_of<Dim>(tank), layers_of(method)));
+  });
 }
 
 double count_tank_walls(const Tank& tank, const Method& method) {
-  return count_walls_around(room_of(tank), layers_of(method));
+  return in_dimensions(method.dimensions(), [&]<int Dim>() {
+    return count_walls_around(room_of<Dim>(tank), layers_of(method));
+  });
 }
 
-Rectangle gate_body(const Gate& gate, const Method& method) {
-  const double thickness = static_cast<double>(wall_layers(method)) * method.spacing;
-  return {Vec(gate.x, 0.0), Vec(thickness, gate.height)};
+Shape gate_body(const Scene& scene) {
+  const Gate& gate = *scene.gate;
+  const double thickness = static_cast<double>(wall_layers(scene.method)) * scene.method.spacing;
+  if (scene.dimensions() == 2) return Rectangle{Vec2(gate.x, 0.0), Vec2(thickness, gate.height)};
+  return Cuboid<3>{Vec3(gate.x, 0.0, 0.0),
+                   Vec3(thickness, gate.height, scene.tank->depth.value_or(0.0))};
 }
 
 std::vector<Shape> solid_bodies(const Scene& scene) {
   std::vector<Shape> solids = scene.obstacles;
-  if (scene.gate) solids.emplace_back(gate_body(*scene.gate, scene.method));
+  if (scene.gate) solids.push_back(gate_body(scene));
   return solids;
 }
 
 std::vector<Vec> scene_walls(const Scene& scene) {
   std::vector<Vec> walls;
   if (scene.tank) walls = tank_walls(*scene.tank, scene.method);
-  const std::vector<Shape> solids = solid_bodies(scene);
-  const std::vector<bool> beside = beside_misfits(scene);
-  const auto layers = [&](std::size_t i) -> std::optional<std::vector<Vec>> {
-    if (i >= beside.size() || !beside[i]) return std::nullopt;
-    const std::optional<Polygon> polygon = straight_outline_of(solids[i]);
-    if (!polygon) return std::nullopt;
-    return face_layers(*polygon, scene.method,
-                       [&](const Vec& point) { return is_covered(scene, i, point); });
-  };
-  const std::vector<Vec> solid = walls_of_solids<kDim>(solids, layers_of(scene.method), layers);
+  const std::vector<Vec> solid =
+      in_dimensions(scene.dimensions(), [&]<int Dim>() { return solid_walls<Dim>(scene); });
   walls.insert(walls.end(), solid.begin(), solid.end());
   return walls;
 }
 
 std::vector<Vec> obstacle_walls(const std::vector<Shape>& obstacles, const Method& method) {
-  return walls_of_solids<kDim>(obstacles, layers_of(method),
-                               [](std::size_t) { return std::nullopt; });
+  return in_dimensions(method.dimensions(), [&]<int Dim>() {
+    return as_any<Dim>(walls_of_solids<Dim>(shapes_as<Dim>(obstacles), layers_of(method),
+                                            [](std::size_t) { return std::nullopt; }));
+  });
 }
 
 }  // namespace sluice

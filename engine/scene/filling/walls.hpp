@@ -17,8 +17,9 @@ namespace sluice {
 /// How many tank_walls() makes; a double, so that an absurd tank gives a large number.
 [[nodiscard]] double count_tank_walls(const Tank& tank, const Method& method);
 
-/// What a gate fills: wall_layers() spacings to the right of its x, from the floor up.
-[[nodiscard]] Rectangle gate_body(const Gate& gate, const Method& method);
+/// What the gate of a scene fills: wall_layers() spacings to the right of its x, from the floor up,
+/// from side to side. Of a scene without one, or without a tank: nothing is promised.
+[[nodiscard]] Shape gate_body(const Scene& scene);
 
 /// All that stands in the tank at the start: the obstacles, then the gate.
 [[nodiscard]] std::vector<Shape> solid_bodies(const Scene& scene);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace sluice {
 
-/// Where the pressure of water at rest is zero, for each point of the fluid; in the plane, where
-/// columns of water stand side by side along one line.
+/// Where the pressure of water at rest is zero, for each point of the fluid. Columns of water stand
+/// side by side: in the plane along a line, in space on a grid.
 ///
 /// A region by itself has one level: its highest point against gravity f. Regions that touch
 /// (within a spacing, with no obstacle between) and move alike are one body: a point below another
@@ -26,31 +27,36 @@ class WaterLevels {
   [[nodiscard]] double pressure(std::size_t region, const Vec& point) const;
 
  private:
-  /// Levels, as f . x, of columns along f that are a spacing wide; empty: one level everywhere.
+  /// A place across f, along each of across_, m; in the plane the second one is 0.
+  using Across = std::array<double, 2>;
+  /// Levels, as f . x, of columns along f that are a spacing wide; none: one level everywhere.
   struct Levels {
     double own = 0.0;
-    double first = 0.0;  ///< where the first column begins, along across_
-    std::vector<double> columns;
+    Across first{};  ///< where the first column begins
+    std::array<std::size_t, 2> count{1, 1};
+    std::vector<double> columns;  ///< along the first of across_ fastest
   };
   struct Climb {
     double level = 0.0;
     bool open = true;
   };
+  using Climbs = std::vector<std::optional<Climb>>;
 
   [[nodiscard]] bool joined(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool blocked(const Vec& foot, double from, double to) const;
   [[nodiscard]] bool below_tank(const Vec& point) const;
-  [[nodiscard]] std::optional<Climb> climb(std::size_t region, double across) const;
-  [[nodiscard]] std::vector<std::optional<Climb>> climbs(std::size_t region) const;
-  void take_nearest_open(std::size_t region, const std::vector<std::optional<Climb>>& climbs);
+  [[nodiscard]] std::optional<Climb> climb(std::size_t region, const Across& place) const;
+  void lay_columns(std::size_t region);
+  [[nodiscard]] Climbs climbs(std::size_t region) const;
+  void take_nearest_open(std::size_t region, const Climbs& climbs);
   void share_with_covered(std::vector<bool> open);
   [[nodiscard]] std::optional<Vec> touch(std::size_t a, std::size_t b) const;
   [[nodiscard]] double level_at(std::size_t region, const Vec& point) const;
 
   const Scene& scene_;
   std::vector<Shape> solids_;
-  Vec up_ = Vec::Zero();
-  Vec across_ = Vec::Zero();
+  Vec up_;
+  std::vector<Vec> across_;  ///< d - 1 unit vectors across f and one another
   std::vector<Levels> regions_;
 };
 

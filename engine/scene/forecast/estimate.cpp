@@ -30,10 +30,10 @@ constexpr std::uint64_t kSampleCopies = 3;
 constexpr std::uint64_t kFrameBytes = 28;
 constexpr std::uint64_t kCheckpoints = 3;
 
-std::uint64_t checkpoint_bytes_per_particle(Integrator integrator) {
+std::uint64_t checkpoint_bytes_per_particle(const Method& method) {
   std::uint64_t fields = 0;
-  for (const Field& field : kFields) {
-    if (field.role == Role::state && carries(integrator, field)) ++fields;
+  for (const Field& field : fields_in(static_cast<std::size_t>(method.dimensions()))) {
+    if (field.role == Role::state && carries(method.integrator, field)) ++fields;
   }
   return fields * sizeof(double);
 }
@@ -52,10 +52,9 @@ Estimate complete(const Scene& scene, std::uint64_t fluid, std::uint64_t walls) 
   e.memory_bytes = kProgramBytes +
                    e.fluid_particles * (mixed ? kFluidBytesMixed : kFluidBytesDouble) +
                    e.wall_particles * kWallBytes + e.samples * kSampleBytes * kSampleCopies;
-  e.disk_bytes =
-      kCheckpoints * (e.fluid_particles * checkpoint_bytes_per_particle(scene.method.integrator) +
-                      e.samples * kSampleBytes) +
-      e.samples * kSampleBytes + e.frames * e.fluid_particles * kFrameBytes;
+  e.disk_bytes = kCheckpoints * (e.fluid_particles * checkpoint_bytes_per_particle(scene.method) +
+                                 e.samples * kSampleBytes) +
+                 e.samples * kSampleBytes + e.frames * e.fluid_particles * kFrameBytes;
   return e;
 }
 

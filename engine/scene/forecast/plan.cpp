@@ -135,7 +135,7 @@ void plan_passes(const Scene& scene, const Lists& passes) {
 
 void plan_fields(const Scene& scene, const Lists& fields) {
   const Integrator integrator = scene.method.integrator;
-  for (const Field& field : kFields) {
+  for (const Field& field : fields_in(static_cast<std::size_t>(scene.dimensions()))) {
     const std::string about = fmt::format("{}, {}", field.description, field.unit);
     if (field.carried_by == CarriedBy::every_scheme) {
       fields.always(field.name, about);

@@ -10,12 +10,25 @@
 namespace sluice {
 namespace {
 
-double count_cells(const Shape& shape, double spacing) {
-  if (const auto* rectangle = std::get_if<Rectangle>(&shape)) {
-    const Vec cells = (rectangle->size / spacing).array().round().max(1.0);
+template <int Dim>
+double count_cells_of(const ShapeN<Dim>& shape, double spacing) {
+  if (const auto* cuboid = std::get_if<Cuboid<Dim>>(&shape)) {
+    const VecN<Dim> cells = (cuboid->size / spacing).array().round().max(1.0);
     return cells.prod();
   }
-  return measure(shape) / cell_measure<kDim>(spacing);
+  return measure(shape) / cell_measure<Dim>(spacing);
+}
+
+double count_cells(const Shape& shape, double spacing) {
+  return in_dimensions(dimensions_of(shape), [&]<int Dim>() {
+    return count_cells_of<Dim>(shape_as<Dim>(shape), spacing);
+  });
+}
+
+/// Cells of a layer around a shape.
+double count_surface_cells(const Shape& shape, double spacing) {
+  double cells = perimeter(shape) / spacing;
+  return dimensions_of(shape) == 3 ? cells / spacing : cells;
 }
 
 // The factor of both parts of eq. 18 that the paper gives for the force condition.
@@ -42,9 +55,9 @@ double count_wall_cells(const Scene& scene) {
   const auto layers = static_cast<double>(wall_layers(scene.method));
   double sum = scene.tank ? count_tank_walls(*scene.tank, scene.method) : 0.0;
   for (const Shape& shape : scene.obstacles) {
-    sum += std::min(count_cells(shape, dx), perimeter(shape) / dx * layers);
+    sum += std::min(count_cells(shape, dx), count_surface_cells(shape, dx) * layers);
   }
-  if (scene.gate) sum += count_cells(gate_body(*scene.gate, scene.method), dx);
+  if (scene.gate) sum += count_cells(gate_body(scene), dx);
   return sum;
 }
 

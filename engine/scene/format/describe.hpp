@@ -76,8 +76,13 @@ void describe(Archive& a, WrittenScene& written) {
          {.about = "name of the scene", .min = 1, .max = 64, .need = Need::required});
   a.text("description", scene.description,
          {.about = "what it is for", .characters = Characters::sentence, .max = 2000});
+  a.integer("dimensions", written.dimensions,
+            {.about = "2: the plane, x and y; 3: space",
+             .range = from(2, 3),
+             .otherwise = "that of the first fluid's shape"});
   a.section("tank", scene.tank,
-            {.about = "solid walls around [0, width] x [0, height]", .otherwise = "no walls"});
+            {.about = "solid walls around [0, width] x [0, height], in space x [0, depth]",
+             .otherwise = "no walls"});
   a.section(
       "gate", scene.gate,
       {.about = "a wall across the tank that is lifted at the start", .otherwise = "no gate"});

@@ -11,29 +11,36 @@ namespace sluice {
 
 // Part of the scene format (describe.hpp): shapes, fluid, tank, gate.
 
-template <class Archive>
-void describe(Archive& a, Rectangle& shape) {
-  a.vector(
-      "corner", shape.corner,
-      {.about = "lower left corner", .unit = "m", .range = kCoordinate, .need = Need::required});
+template <class Archive, int Dim>
+void describe(Archive& a, Cuboid<Dim>& shape) {
+  constexpr bool kPlane = Dim == 2;
+  a.vector("corner", shape.corner,
+           {.about = kPlane ? "lower left corner" : "corner of lowest coordinates",
+            .unit = "m",
+            .range = kCoordinate,
+            .need = Need::required});
   a.vector("size", shape.size,
-           {.about = "width and height", .unit = "m", .range = kLength, .need = Need::required});
+           {.about = kPlane ? "width and height" : "width, height and depth: along x, y and z",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
 }
 
-template <class Archive>
-void describe(Archive& a, Circle& shape) {
+template <class Archive, int Dim>
+void describe(Archive& a, Ball<Dim>& shape) {
   a.vector("center", shape.center,
            {.about = "center", .unit = "m", .range = kCoordinate, .need = Need::required});
   a.number("radius", shape.radius,
            {.about = "radius", .unit = "m", .range = kLength, .need = Need::required});
 }
 
-template <class Archive>
-void describe(Archive& a, Ellipse& shape) {
+template <class Archive, int Dim>
+void describe(Archive& a, Ellipsoid<Dim>& shape) {
   a.vector("center", shape.center,
            {.about = "center", .unit = "m", .range = kCoordinate, .need = Need::required});
   a.vector("semi_axes", shape.semi_axes,
-           {.about = "half the width and half the height",
+           {.about = Dim == 2 ? "half the width and half the height"
+                              : "half the width, half the height and half the depth",
             .unit = "m",
             .range = kLength,
             .need = Need::required});
@@ -55,6 +62,7 @@ void describe_shape(Archive& a, Shape& shape, const More& more) {
   a.choice("shape", kShapeWords, kind_of(shape), "what the region looks like",
            [&](auto& branch, ShapeKind kind) {
              if (kind_of(shape) != kind) shape = shape_of(kind);
+             branch.require_dimensions("shape", dimensions_of(shape));
              std::visit([&](auto& each) { describe(branch, each); }, shape);
              more(branch);
            });
@@ -69,16 +77,19 @@ template <class Archive>
 void describe(Archive& a, FluidRegion& region) {
   describe_shape(a, region.shape, [&](auto& branch) {
     branch.vector("velocity", region.velocity,
-                  {.about = "velocity at the start", .unit = "m/s", .range = from(-1e6, 1e6)});
+                  {.about = "velocity at the start",
+                   .unit = "m/s",
+                   .range = from(-1e6, 1e6),
+                   .otherwise = "at rest"});
     branch.number("strain_rate", region.strain_rate,
-                  {.about = "A of a flow A (x, -y) about the middle of the region, on top of its "
-                            "velocity",
+                  {.about = "A of a flow A (x, -y), in space A (x, -y, 0), about the middle of the "
+                            "region, on top of its velocity",
                    .unit = "1/s",
                    .range = from(-1e9, 1e9),
                    .otherwise = "none"});
     branch.number("rotation_rate", region.rotation_rate,
-                  {.about = "w of a rotation w (-y, x) about the middle of the region, on top of "
-                            "its velocity",
+                  {.about = "w of a rotation w (-y, x), in space w (-y, x, 0), about the middle of "
+                            "the region, on top of its velocity",
                    .unit = "1/s",
                    .range = from(-1e9, 1e9),
                    .otherwise = "none"});
@@ -99,6 +110,12 @@ void describe(Archive& a, Tank& tank) {
             .unit = "m",
             .range = kLength,
             .need = Need::required});
+  a.number("depth", tank.depth,
+           {.about = "inner depth: walls stand at z = 0 and z = depth; in space only, and there it "
+                     "must be given",
+            .unit = "m",
+            .range = kLength,
+            .otherwise = "a tank of the plane"});
   a.flag("open_top", tank.open_top, {.about = "false: with a lid at y = height"});
 }
 
@@ -126,12 +143,16 @@ void describe(Archive& a, Gate& gate) {
 
 template <class Archive>
 void describe(Archive& a, Box& box) {
-  a.vector(
-      "min", box.min,
-      {.about = "lower left corner", .unit = "m", .range = kCoordinate, .need = Need::required});
-  a.vector(
-      "max", box.max,
-      {.about = "upper right corner", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.vector("min", box.min,
+           {.about = "corner of lowest coordinates",
+            .unit = "m",
+            .range = kCoordinate,
+            .need = Need::required});
+  a.vector("max", box.max,
+           {.about = "corner of highest coordinates",
+            .unit = "m",
+            .range = kCoordinate,
+            .need = Need::required});
 }
 
 }  // namespace sluice

@@ -39,6 +39,24 @@ void describe_air_pressure(Archive& a, Sensor& sensor) {
             .otherwise = "the mean over the fluid alone, eq. 11"});
 }
 
+/// Where on the floor a surface is sought; x is needed where `need` says so.
+template <class Archive>
+void describe_foot(Archive& a, Sensor& sensor, Need need) {
+  a.number("x", sensor.position[0],
+           {.about = need == Need::required ? "where the surface is sought"
+                                            : "where the surface is sought: the left wall",
+            .unit = "m",
+            .range = kCoordinate,
+            .need = need});
+  if (sensor.position.size() < 3) return;
+  // Not needed in the plane, so that a schema of all scenes does not ask for it.
+  a.number("z", sensor.position[2],
+           {.about = "where the surface is sought; in space only",
+            .unit = "m",
+            .range = kCoordinate,
+            .need = Archive::kOfAllScenes ? Need::optional : need});
+}
+
 template <class Archive>
 void describe_kind(Archive& a, Sensor& sensor) {
   switch (sensor.kind) {
@@ -51,17 +69,10 @@ void describe_kind(Archive& a, Sensor& sensor) {
       describe_position(a, sensor);
       return;
     case SensorKind::surface_height:
-      a.number("x", sensor.position.x(),
-               {.about = "where the surface is sought",
-                .unit = "m",
-                .range = kCoordinate,
-                .need = Need::required});
+      describe_foot(a, sensor, Need::required);
       return;
     case SensorKind::column_height:
-      a.number("x", sensor.position.x(),
-               {.about = "where the surface is sought: the left wall",
-                .unit = "m",
-                .range = kCoordinate});
+      describe_foot(a, sensor, Need::optional);
       return;
     case SensorKind::surge_front:
     case SensorKind::energy:
@@ -74,6 +85,7 @@ void describe(Archive& a, Sensor& sensor) {
   a.choice("kind", kSensorWords, sensor.kind, "what it measures",
            [&](auto& branch, SensorKind kind) {
              sensor.kind = kind;
+             branch.fit(sensor.position);
              branch.text("name", sensor.name,
                          {.about = "name of its series, unique in the scene",
                           .min = 1,

@@ -18,8 +18,8 @@ bool is_control_character(char c) { return (c >= 0 && c < ' ') || c == 0x7f; }
 
 }  // namespace
 
-Reader::Reader(const json& value, std::string pointer, Problems& problems)
-    : value_(value), pointer_(std::move(pointer)), problems_(problems) {
+Reader::Reader(const json& value, std::string pointer, Problems& problems, int dimensions)
+    : value_(value), pointer_(std::move(pointer)), problems_(problems), dimensions_(dimensions) {
   is_object_ = value.is_object();
   if (!is_object_) {
     problems_.add(pointer_, fmt::format("is {}; must be an object", name_value(value)));
@@ -65,16 +65,35 @@ std::optional<double> Reader::read_number(const json& value, const std::string& 
 }
 
 std::optional<Vec> Reader::read_vector(const json& value, const std::string& pointer,
-                                       const NumberSpec& spec) {
-  if (!value.is_array() || value.size() != kDim) {
-    problems_.add(pointer, fmt::format("is {}; must be an array of {} numbers {}",
-                                       name_value(value), kDim, to_text(spec.range, spec.unit)));
+                                       const NumberSpec& spec, int dimensions) {
+  const auto wanted = static_cast<std::size_t>(dimensions);
+  if (!value.is_array() || value.size() != wanted) {
+    const bool mixes = value.is_array() && (value.size() == 2 || value.size() == 3);
+    problems_.add(pointer,
+                  fmt::format("is {}; must be an array of {} numbers {}{}", name_value(value),
+                              wanted, to_text(spec.range, spec.unit),
+                              mixes ? fmt::format(", in a scene of {} dimensions", wanted) : ""));
     return std::nullopt;
   }
-  const auto x = read_number(value[0], at(pointer, std::size_t{0}), spec);
-  const auto y = read_number(value[1], at(pointer, std::size_t{1}), spec);
-  if (!x || !y) return std::nullopt;
-  return Vec(*x, *y);
+  Vec vector = filled_vec<kAnyDim>(0.0, dimensions);
+  bool whole = true;
+  for (std::size_t axis = 0; axis < wanted; ++axis) {
+    const auto number = read_number(value[axis], at(pointer, axis), spec);
+    whole = whole && number;
+    vector[static_cast<Eigen::Index>(axis)] = number.value_or(0.0);
+  }
+  return whole ? std::optional(vector) : std::nullopt;
+}
+
+void Reader::fit(Vec& member) const {
+  if (dimensions_of(member) != dimensions_) member = filled_vec<kAnyDim>(0.0, dimensions_);
+}
+
+void Reader::require_dimensions(std::string_view key, int dimensions) {
+  if (dimensions == dimensions_) return;
+  problems_.add(at(pointer_, key),
+                fmt::format("is {}, which has {} dimensions; must have {}, as the scene",
+                            excerpt(value_[std::string(key)]), dimensions, dimensions_));
 }
 
 std::optional<std::string> Reader::pick_word(const json& value, const std::string& pointer,
@@ -104,6 +123,12 @@ void Reader::number(std::string_view key, std::optional<double>& member, const N
 }
 
 void Reader::integer(std::string_view key, int& member, const NumberSpec& spec) {
+  std::optional<int> read;
+  integer(key, read, spec);
+  member = read.value_or(member);
+}
+
+void Reader::integer(std::string_view key, std::optional<int>& member, const NumberSpec& spec) {
   const json* found = find(key, spec.need, spec.about);
   if (found == nullptr) return;
   const auto value = read_number(*found, at(pointer_, key), spec);
@@ -148,22 +173,23 @@ void Reader::text(std::string_view key, std::string& member, const TextSpec& spe
 }
 
 void Reader::vector(std::string_view key, Vec& member, const NumberSpec& spec) {
+  fit(member);
   const json* found = find(key, spec.need, spec.about);
   if (found == nullptr) return;
-  if (const auto value = read_vector(*found, at(pointer_, key), spec)) member = *value;
+  if (const auto value = read_vector(*found, at(pointer_, key), spec, dimensions_)) member = *value;
 }
 
 void Reader::vector(std::string_view key, std::optional<Vec>& member, const NumberSpec& spec) {
   const json* found = find(key, spec.need, spec.about);
-  if (found != nullptr) member = read_vector(*found, at(pointer_, key), spec);
+  if (found != nullptr) member = read_vector(*found, at(pointer_, key), spec, dimensions_);
 }
 
-void Reader::points(std::string_view key, std::vector<Vec>& member, const ListSpec& spec,
+void Reader::points(std::string_view key, std::vector<Vec2>& member, const ListSpec& spec,
                     const NumberSpec& point) {
   const json* found = find_list(key, spec);
   if (found == nullptr) return;
   for (std::size_t i = 0; i < found->size(); ++i) {
-    if (const auto value = read_vector((*found)[i], at(at(pointer_, key), i), point)) {
+    if (const auto value = read_vector((*found)[i], at(at(pointer_, key), i), point, 2)) {
       member.push_back(*value);
     }
   }

@@ -19,16 +19,32 @@ namespace sluice {
 /// is missing or wrong keeps its default, and the reason goes to `problems`.
 class Reader {
  public:
-  Reader(const nlohmann::json& value, std::string pointer, Problems& problems);
+  /// What a scene lets have two or three components has `dimensions`.
+  Reader(const nlohmann::json& value, std::string pointer, Problems& problems,
+         int dimensions = kPlaneDim);
+
+  /// An archive that describes all scenes knows no number of dimensions.
+  static constexpr bool kOfAllScenes = false;
+  /// Gives a vector as many components as the scene has dimensions.
+  void fit(Vec& member) const;
+  /// Reports the word of `key` where what it names is of another number of dimensions.
+  void require_dimensions(std::string_view key, int dimensions);
 
   void number(std::string_view key, double& member, const NumberSpec& spec);
   void number(std::string_view key, std::optional<double>& member, const NumberSpec& spec);
   void integer(std::string_view key, int& member, const NumberSpec& spec);
+  void integer(std::string_view key, std::optional<int>& member, const NumberSpec& spec);
   void flag(std::string_view key, bool& member, const KeySpec& spec);
   void text(std::string_view key, std::string& member, const TextSpec& spec);
   void vector(std::string_view key, Vec& member, const NumberSpec& spec);
   void vector(std::string_view key, std::optional<Vec>& member, const NumberSpec& spec);
-  void points(std::string_view key, std::vector<Vec>& member, const ListSpec& spec,
+  template <int Dim>
+  void vector(std::string_view key, VecN<Dim>& member, const NumberSpec& spec) {
+    const nlohmann::json* found = find(key, spec.need, spec.about);
+    if (found == nullptr) return;
+    if (const auto value = read_vector(*found, at(pointer_, key), spec, Dim)) member = *value;
+  }
+  void points(std::string_view key, std::vector<Vec2>& member, const ListSpec& spec,
               const NumberSpec& point);
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
                const NumberSpec& each);
@@ -92,7 +108,7 @@ class Reader {
     const nlohmann::json* found = find_list(key, spec);
     if (found == nullptr) return;
     for (std::size_t i = 0; i < found->size(); ++i) {
-      Reader child((*found)[i], at(at(pointer_, key), i), problems_);
+      Reader child((*found)[i], at(at(pointer_, key), i), problems_, dimensions_);
       describe(child, member.emplace_back());
       child.finish();
     }
@@ -109,7 +125,7 @@ class Reader {
   std::optional<double> read_number(const json& value, const std::string& pointer,
                                     const NumberSpec& spec);
   std::optional<Vec> read_vector(const json& value, const std::string& pointer,
-                                 const NumberSpec& spec);
+                                 const NumberSpec& spec, int dimensions);
   std::optional<std::string> pick_word(const json& value, const std::string& pointer,
                                        std::span<const std::string_view> words);
 
@@ -127,7 +143,7 @@ class Reader {
 
   template <class More>
   void enter(const json& value, std::string_view key, const More& more) {
-    Reader child(value, at(pointer_, key), problems_);
+    Reader child(value, at(pointer_, key), problems_, dimensions_);
     more(child);
     child.finish();
   }
@@ -135,6 +151,7 @@ class Reader {
   const json& value_;
   std::string pointer_;
   Problems& problems_;
+  int dimensions_;
   std::vector<std::string_view> known_;
   bool is_object_ = true;
   bool any_key_ = false;

@@ -40,13 +40,13 @@ SchemaWriter::json SchemaWriter::describe_number(const NumberSpec& spec) {
   return schema;
 }
 
-SchemaWriter::json SchemaWriter::describe_vector(const NumberSpec& spec) {
+SchemaWriter::json SchemaWriter::describe_vector(const NumberSpec& spec, int least, int most) {
   return {{"description", about(spec.about, spec.otherwise)},
           {"x-unit", spec.unit},
           {"type", "array"},
           {"items", describe_number(spec)},
-          {"minItems", kDim},
-          {"maxItems", kDim}};
+          {"minItems", least},
+          {"maxItems", most}};
 }
 
 void SchemaWriter::put(std::string_view key, json property, Need need) {
@@ -78,11 +78,16 @@ void SchemaWriter::number(std::string_view key, std::optional<double>& /*member*
 }
 
 void SchemaWriter::integer(std::string_view key, int& member, const NumberSpec& spec) {
+  std::optional<int> none;
+  integer(key, none, spec);
+  if (spec.need == Need::optional) properties_[std::string(key)]["default"] = member;
+}
+
+void SchemaWriter::integer(std::string_view key, std::optional<int>& /*member*/,
+                           const NumberSpec& spec) {
   std::optional<double> none;
   number(key, none, spec);
-  json& property = properties_[std::string(key)];
-  property["type"] = "integer";
-  if (spec.need == Need::optional) property["default"] = member;
+  properties_[std::string(key)]["type"] = "integer";
 }
 
 void SchemaWriter::flag(std::string_view key, bool& member, const KeySpec& spec) {
@@ -102,20 +107,18 @@ void SchemaWriter::text(std::string_view key, std::string& member, const TextSpe
   put(key, std::move(property), spec.need);
 }
 
-void SchemaWriter::vector(std::string_view key, Vec& member, const NumberSpec& spec) {
-  json property = describe_vector(spec);
-  if (spec.need == Need::optional) property["default"] = json(member);
-  put(key, std::move(property), spec.need);
+void SchemaWriter::vector(std::string_view key, Vec& /*member*/, const NumberSpec& spec) {
+  put(key, describe_vector(spec, kPlaneDim, kMostDim), spec.need);
 }
 
 void SchemaWriter::vector(std::string_view key, std::optional<Vec>& /*member*/,
                           const NumberSpec& spec) {
-  put(key, describe_vector(spec), spec.need);
+  put(key, describe_vector(spec, kPlaneDim, kMostDim), spec.need);
 }
 
-void SchemaWriter::points(std::string_view key, std::vector<Vec>& /*member*/, const ListSpec& spec,
+void SchemaWriter::points(std::string_view key, std::vector<Vec2>& /*member*/, const ListSpec& spec,
                           const NumberSpec& point) {
-  put_list(key, describe_vector(point), spec);
+  put_list(key, describe_vector(point, 2, 2), spec);
 }
 
 void SchemaWriter::numbers(std::string_view key, std::vector<double>& /*member*/,
@@ -158,7 +161,8 @@ std::string scene_schema_text() {
       {"$id", "urn:sluice:scene:1"},
       {"title", "Sluice scene"},
       {"description",
-       "What to simulate. Lengths in m, times in s, SI units throughout; x to the right, y up. A "
+       "What to simulate. Lengths in m, times in s, SI units throughout; x to the right, y up, in "
+       "space z towards the viewer. Vectors have a number for each dimension of the scene. A "
        "key that is left out is a term that is left out, or has the default given here."}};
   schema.update(writer.schema());
   add_former_words(schema, kFormerSceneWords);

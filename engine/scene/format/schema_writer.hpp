@@ -25,11 +25,19 @@ class SchemaWriter {
   void number(std::string_view key, double& member, const NumberSpec& spec);
   void number(std::string_view key, std::optional<double>& member, const NumberSpec& spec);
   void integer(std::string_view key, int& member, const NumberSpec& spec);
+  void integer(std::string_view key, std::optional<int>& member, const NumberSpec& spec);
   void flag(std::string_view key, bool& member, const KeySpec& spec);
   void text(std::string_view key, std::string& member, const TextSpec& spec);
   void vector(std::string_view key, Vec& member, const NumberSpec& spec);
   void vector(std::string_view key, std::optional<Vec>& member, const NumberSpec& spec);
-  void points(std::string_view key, std::vector<Vec>& member, const ListSpec& spec,
+  template <int Dim>
+  void vector(std::string_view key, VecN<Dim>& /*member*/, const NumberSpec& spec) {
+    put(key, describe_vector(spec, Dim, Dim), spec.need);
+  }
+  static constexpr bool kOfAllScenes = true;
+  void fit(Vec& member) const { member = filled_vec<kAnyDim>(0.0, kMostDim); }
+  void require_dimensions(std::string_view, int) {}
+  void points(std::string_view key, std::vector<Vec2>& member, const ListSpec& spec,
               const NumberSpec& point);
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
                const NumberSpec& each);
@@ -117,7 +125,8 @@ class SchemaWriter {
  private:
   static std::string about(std::string_view about, std::string_view otherwise);
   static json describe_number(const NumberSpec& spec);
-  static json describe_vector(const NumberSpec& spec);
+  /// An array of at least and at most so many numbers.
+  static json describe_vector(const NumberSpec& spec, int least, int most);
   void put(std::string_view key, json property, Need need);
   void put_list(std::string_view key, json items, const ListSpec& spec);
 

@@ -22,15 +22,24 @@ class Writer {
     if (member) put(key, *member);
   }
   void integer(std::string_view key, int& member, const NumberSpec&) { put(key, member); }
+  void integer(std::string_view key, std::optional<int>& member, const NumberSpec&) {
+    if (member) put(key, *member);
+  }
   void flag(std::string_view key, bool& member, const KeySpec&) { put(key, member); }
   void text(std::string_view key, std::string& member, const TextSpec&) { put(key, member); }
-  void vector(std::string_view key, Vec& member, const NumberSpec&) { put(key, json(member)); }
+  template <int Dim>
+  void vector(std::string_view key, VecN<Dim>& member, const NumberSpec&) {
+    put(key, json(member));
+  }
   void vector(std::string_view key, std::optional<Vec>& member, const NumberSpec&) {
     if (member) put(key, json(*member));
   }
-  void points(std::string_view key, std::vector<Vec>& member, const ListSpec&, const NumberSpec&) {
+  static constexpr bool kOfAllScenes = false;
+  void fit(Vec&) const {}
+  void require_dimensions(std::string_view, int) {}
+  void points(std::string_view key, std::vector<Vec2>& member, const ListSpec&, const NumberSpec&) {
     json all = json::array();
-    for (const Vec& each : member) all.push_back(json(each));
+    for (const Vec2& each : member) all.push_back(json(each));
     put(key, std::move(all));
   }
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,

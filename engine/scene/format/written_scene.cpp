@@ -60,7 +60,9 @@ Box domain_of_tank(const Scene& scene) {
   const double above = tank.open_top
                            ? 2 * std::max(fluid_height(scene), fluid_bounds(scene).size()[kUpAxis])
                            : walls;
-  return {Vec::Constant(-walls), Vec(tank.width + walls, tank.height + std::max(above, walls))};
+  Box box = grown(tank.interior(), walls);
+  box.max[kUpAxis] = tank.height + std::max(above, walls);
+  return box;
 }
 
 // Where the fluid starts and where it flies to with nothing in its way.
@@ -76,26 +78,29 @@ Box domain_of_flight(const Scene& scene) {
       const bool turns = v * f < 0 && -v / f < t;
       return turns ? -v * v / (2 * f) : 0.0;
     });
-    const Vec spread = Vec::Constant((greatest_speed(region) - region.velocity.norm()) * t);
+    const double spread = (greatest_speed(region) - region.velocity.norm()) * t;
     for (const Vec& shift : {flight, rise}) {
-      box.min = box.min.cwiseMin(start.min + shift - spread);
-      box.max = box.max.cwiseMax(start.max + shift + spread);
+      const Box moved = grown(Box{start.min + shift, start.max + shift}, spread);
+      box.min = box.min.cwiseMin(moved.min);
+      box.max = box.max.cwiseMax(moved.max);
     }
   }
   const double margin = start.size().maxCoeff() + scene.method.support();
-  return {box.min - Vec::Constant(margin), box.max + Vec::Constant(margin)};
+  return grown(box, margin);
 }
 
 }  // namespace
 
-WrittenScene::WrittenScene(std::optional<Scheme> scheme) {
+WrittenScene::WrittenScene(std::optional<Scheme> scheme, int of_dimensions) {
   scene.numerics.scheme = scheme;
   scene.method = method_of(scheme);
+  scene.method.gravity = filled_vec<kAnyDim>(0.0, of_dimensions);
   scene.method.reference_density = kWaterDensity;
 }
 
 WrittenScene::WrittenScene(const Scene& from)
     : scene(from),
+      dimensions(from.dimensions() == kPlaneDim ? std::nullopt : std::optional(from.dimensions())),
       domain(from.domain.box),
       sound_speed(from.method.sound_speed),
       smoothing_ratio(ratio_of(from.method.smoothing_length, from.method.spacing)) {
@@ -113,9 +118,7 @@ double fluid_height(const Scene& scene) {
   if (strength == 0.0) return 0.0;
   const Vec down = f / strength;
   const double lowest =
-      scene.tank
-          ? farthest_along(Rectangle{Vec::Zero(), Vec(scene.tank->width, scene.tank->height)}, down)
-          : farthest_fluid(scene, down);
+      scene.tank ? down.cwiseMax(0.0).dot(scene.tank->size()) : farthest_fluid(scene, down);
   return lowest + farthest_fluid(scene, -down);
 }
 
@@ -130,7 +133,7 @@ Box default_domain(const Scene& scene) {
 Scene resolve(const WrittenScene& written) {
   Scene scene = written.scene;
   Method& method = scene.method;
-  method.gravity = written.gravity.value_or(Vec::Zero());
+  if (written.gravity) method.gravity = *written.gravity;
   method.smoothing_length =
       written.smoothing_ratio.value_or(default_smoothing_ratio(method.kernel)) * method.spacing;
   method.sound_speed = written.sound_speed ? *written.sound_speed : default_sound_speed(scene);
@@ -139,12 +142,16 @@ Scene resolve(const WrittenScene& written) {
   if (scene.tank && scene.tank->open_top) {
     scene.domain.wall_top = scene.tank->height;
     const double middle = static_cast<double>(wall_layers(method)) / 2 * method.spacing;
-    scene.domain.rim_left = -middle;
-    scene.domain.rim_right = scene.tank->width + middle;
+    const Box sides = grown(scene.tank->interior(), middle);
+    scene.domain.rim = Box::everywhere(scene.dimensions());
+    for (const int axis : floor_axes(scene.dimensions())) {
+      scene.domain.rim.min[axis] = sides.min[axis];
+      scene.domain.rim.max[axis] = sides.max[axis];
+    }
   }
   if (scene.gate && scene.tank) {
     if (scene.gate->height == 0.0) scene.gate->height = scene.tank->height;
-    scene.domain.gate = GateMotion{bounds(gate_body(*scene.gate, method)), scene.gate->speed};
+    scene.domain.gate = GateMotion{bounds(gate_body(scene)), scene.gate->speed};
   }
   for (Sensor& sensor : scene.sensors) {
     const bool wants_length = sensor.kind == SensorKind::pressure;

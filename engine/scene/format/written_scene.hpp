@@ -10,13 +10,15 @@ namespace sluice {
 /// when they are left out. `scene.method` holds no derived value until resolve() fills it in.
 struct WrittenScene {
   Scene scene;
+  std::optional<int> dimensions;          ///< where the scene says it, as one of space does
   std::optional<Vec> gravity;             ///< m/s^2
   std::optional<Box> domain;              ///< m
   std::optional<double> sound_speed;      ///< m/s
   std::optional<double> smoothing_ratio;  ///< h/dx
 
   /// With the numerics of this scheme.
-  explicit WrittenScene(std::optional<Scheme> scheme = Scheme::recommended);
+  explicit WrittenScene(std::optional<Scheme> scheme = Scheme::recommended,
+                        int of_dimensions = kPlaneDim);
   /// The document with everything filled in that resolves to `scene`.
   explicit WrittenScene(const Scene& scene);
 };

@@ -9,7 +9,9 @@ Vec velocity_at(const FluidRegion& region, const Vec& point) {
   const Vec arm = point - bounds(region.shape).middle();
   const double a = region.strain_rate.value_or(0.0);
   const double w = region.rotation_rate.value_or(0.0);
-  return region.velocity + Vec(a * arm.x() - w * arm.y(), w * arm.x() - a * arm.y());
+  Vec velocity = region.velocity;
+  velocity.head<2>() += Vec2(a * arm.x() - w * arm.y(), w * arm.x() - a * arm.y());
+  return velocity;
 }
 
 double greatest_speed(const FluidRegion& region) {

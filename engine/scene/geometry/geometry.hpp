@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <variant>
 #include <vector>
 
@@ -10,60 +11,77 @@
 namespace sluice {
 
 // What every shape answers, of any number of dimensions: shapes.hpp has the bodies that are the
-// same in all, plane_shapes.hpp those of the plane. A shape that lacks one does not compile. The
-// first alternative of a variant says how many dimensions it is of.
+// same in all, plane_shapes.hpp those of the plane. A shape that lacks one does not compile. A
+// point that is handed in has as many dimensions as the shape.
+
+template <class T>
+concept AnyShape =
+    std::same_as<T, Shape> || std::same_as<T, ShapeN<2>> || std::same_as<T, ShapeN<3>>;
+/// The dimension of the type of the points of a shape.
+template <AnyShape S>
+inline constexpr int kPointDim = std::same_as<S, ShapeN<2>>   ? 2
+                                 : std::same_as<S, ShapeN<3>> ? 3
+                                                              : kAnyDim;
 
 /// The smallest box around a shape, m.
-template <class First, class... Rest>
-[[nodiscard]] BoxN<First::dimensions> bounds(const std::variant<First, Rest...>& shape) {
-  return std::visit([](const auto& s) { return bounds(s); }, shape);
+template <AnyShape S>
+[[nodiscard]] BoxN<kPointDim<S>> bounds(const S& shape) {
+  return std::visit([](const auto& s) -> BoxN<kPointDim<S>> { return bounds(s); }, shape);
 }
 
 /// What a shape fills, m^d: an area in the plane, of a polygon without self-intersections.
-template <class First, class... Rest>
-[[nodiscard]] double measure(const std::variant<First, Rest...>& shape) {
+template <AnyShape S>
+[[nodiscard]] double measure(const S& shape) {
   return std::visit([](const auto& s) { return measure(s); }, shape);
 }
 
-/// Length of the outline, m; in the plane.
-template <class First, class... Rest>
-[[nodiscard]] double perimeter(const std::variant<First, Rest...>& shape) {
+/// What surrounds a shape, m^(d-1): the length of the outline in the plane, else the surface.
+template <AnyShape S>
+[[nodiscard]] double perimeter(const S& shape) {
   return std::visit([](const auto& s) { return perimeter(s); }, shape);
 }
 
 /// Whether a point lies in a shape. A point on the surface may go either way.
-template <class First, class... Rest>
-[[nodiscard]] bool contains(const std::variant<First, Rest...>& shape,
-                            const VecN<First::dimensions>& point) {
-  return std::visit([&](const auto& s) { return contains(s, point); }, shape);
+template <AnyShape S>
+[[nodiscard]] bool contains(const S& shape, const VecN<kPointDim<S>>& point) {
+  return std::visit(
+      [&]<class Each>(const Each& s) { return contains(s, VecN<Each::dimensions>(point)); }, shape);
 }
 
 /// Distance from the surface, negative inside, m. Of an ellipsoid to first order in the distance
 /// over its smallest radius of curvature.
-template <class First, class... Rest>
-[[nodiscard]] double signed_distance(const std::variant<First, Rest...>& shape,
-                                     const VecN<First::dimensions>& point) {
-  return std::visit([&](const auto& s) { return signed_distance(s, point); }, shape);
+template <AnyShape S>
+[[nodiscard]] double signed_distance(const S& shape, const VecN<kPointDim<S>>& point) {
+  return std::visit(
+      [&]<class Each>(const Each& s) { return signed_distance(s, VecN<Each::dimensions>(point)); },
+      shape);
 }
 
 /// Largest value of direction . x over a shape.
-template <class First, class... Rest>
-[[nodiscard]] double farthest_along(const std::variant<First, Rest...>& shape,
-                                    const VecN<First::dimensions>& direction) {
-  return std::visit([&](const auto& s) { return farthest_along(s, direction); }, shape);
+template <AnyShape S>
+[[nodiscard]] double farthest_along(const S& shape, const VecN<kPointDim<S>>& direction) {
+  return std::visit(
+      [&]<class Each>(const Each& s) {
+        return farthest_along(s, VecN<Each::dimensions>(direction));
+      },
+      shape);
 }
 
 /// Where the line origin + t direction enters and leaves a shape: values of t in pairs, increasing.
 /// Along an edge it goes as on one side of it.
-template <class First, class... Rest>
-[[nodiscard]] std::vector<double> chords(const std::variant<First, Rest...>& shape,
-                                         const VecN<First::dimensions>& origin,
-                                         const VecN<First::dimensions>& direction) {
-  return std::visit([&](const auto& s) { return chords(s, origin, direction); }, shape);
+template <AnyShape S>
+[[nodiscard]] std::vector<double> chords(const S& shape, const VecN<kPointDim<S>>& origin,
+                                         const VecN<kPointDim<S>>& direction) {
+  return std::visit(
+      [&]<class Each>(const Each& s) {
+        using Point = VecN<Each::dimensions>;
+        return chords(s, Point(origin), Point(direction));
+      },
+      shape);
 }
 
 /// Velocity at the start of a particle of the region at `point`, m/s. The middle is that of the
-/// shape's bounds. Of the plane: what strains and turns does so in it.
+/// shape's bounds. What strains and turns does so in the plane of x and y.
 [[nodiscard]] Vec velocity_at(const FluidRegion& region, const Vec& point);
 /// No particle of the region is faster at the start, m/s.
 [[nodiscard]] double greatest_speed(const FluidRegion& region);

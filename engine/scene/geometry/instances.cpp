@@ -11,4 +11,9 @@ template class WaysN<2>;
 template bool is_long_way(WaysN<2>&, const VecN<2>&, double);
 template bool keeps_apart(const SolidsN<2>&, const VecN<2>&, const VecN<2>&, double, double);
 
+template class SolidsN<3>;
+template class WaysN<3>;
+template bool is_long_way(WaysN<3>&, const VecN<3>&, double);
+template bool keeps_apart(const SolidsN<3>&, const VecN<3>&, const VecN<3>&, double, double);
+
 }  // namespace sluice

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -16,7 +17,8 @@ namespace {
 
 constexpr double kShallow = 0.4;  // spacings; nobody has leaked who is less deep
 constexpr double kDeepEnough = 1.01;
-constexpr int kWays = 8;  // across a solid
+template <int Dim>
+constexpr int kWays = Dim == 2 ? 8 : 32;  // across a solid
 constexpr double kStepsPerSpacing = 8;
 
 bool is_deep(const GateMotion& gate, const Vec& place, double time, double depth) {
@@ -25,48 +27,51 @@ bool is_deep(const GateMotion& gate, const Vec& place, double time, double depth
   return grown(standing, -depth).contains(place);
 }
 
-void add_tank(const TankRoom& tank, double depth, FlowDomain& domain) {
-  domain.room = {Vec::Constant(-depth), tank.size.array() + depth};
+void add_tank(const Tank& tank, double depth, FlowDomain& domain) {
+  domain.room = grown(tank.interior(), depth);
   if (!tank.open_top) return;
   domain.room.max[kUpAxis] = std::numeric_limits<double>::infinity();
-  domain.walls_reach = tank.size[kUpAxis] - depth;
+  domain.walls_reach = tank.height - depth;
 }
 
 /// The obstacles, with all that is needed to say who is deep in them.
+template <int Dim>
 class Obstacles {
  public:
+  using Point = VecN<Dim>;
+
   explicit Obstacles(const Scene& scene)
-      : scene_(std::make_shared<const Scene>(scene)),
-        solids_(solids_of(*scene_)),
+      : shapes_(shapes_as<Dim>(scene.obstacles)),
+        solids_(solids_of<Dim>(scene)),
         spacing_(scene.method.spacing),
-        ways_(half_of_directions<kDim>(kWays)) {
-    for (const Shape& shape : scene_->obstacles) boxes_.push_back(bounds(shape));
+        ways_(half_of_directions<Dim>(kWays<Dim>)) {
+    for (const ShapeN<Dim>& shape : shapes_) boxes_.push_back(bounds(shape));
   }
 
-  [[nodiscard]] bool hold_deep(const Vec& place) const {
+  [[nodiscard]] bool hold_deep(const Point& place) const {
     if (!hold(place)) return false;
     const double depth = solids_.depth(place, kDeepEnough * spacing_);
     return depth > kShallow * spacing_ && depth > allowed_depth(thickness(place), spacing_);
   }
 
  private:
-  [[nodiscard]] bool hold(const Vec& place) const {
+  [[nodiscard]] bool hold(const Point& place) const {
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (boxes_[i].contains(place) && contains(scene_->obstacles[i], place)) return true;
+      if (boxes_[i].contains(place) && contains(shapes_[i], place)) return true;
     }
     return false;
   }
 
   /// How thick what is solid is around a place, m, where it keeps fluid from fluid; what is thicker
   /// than four spacings counts as that, and so does a tip: fluid flows round it anyway.
-  [[nodiscard]] double thickness(const Vec& place) const {
+  [[nodiscard]] double thickness(const Point& place) const {
     const double thick = 4 * spacing_;
     const double beyond = 0.5 * spacing_;
     double least = thick;
-    Vec one = place;
-    Vec other = place;
-    for (const Vec& way : ways_) {
-      const auto to_open = [&](const Vec& direction) {
+    Point one = place;
+    Point other = place;
+    for (const Point& way : ways_) {
+      const auto to_open = [&](const Point& direction) {
         const double step = spacing_ / kStepsPerSpacing;
         return solids_.reach(place, direction, least, step).value_or(least);
       };
@@ -81,12 +86,20 @@ class Obstacles {
     return thin ? least : thick;
   }
 
-  std::shared_ptr<const Scene> scene_;  ///< that the solids are of
-  Solids solids_;
+  std::vector<ShapeN<Dim>> shapes_;
+  SolidsN<Dim> solids_;
   double spacing_;
-  std::vector<Vec> ways_;  ///< in which a thickness is sought
-  std::vector<Box> boxes_;
+  std::vector<Point> ways_;  ///< in which a thickness is sought
+  std::vector<BoxN<Dim>> boxes_;
 };
+
+template <int Dim>
+std::function<bool(const Vec&, double)> in_solids_of(const Scene& scene) {
+  return [obstacles = std::make_shared<const Obstacles<Dim>>(scene), gate = scene.domain.gate,
+          depth = scene.method.spacing](const Vec& place, double time) {
+    return (gate && is_deep(*gate, place, time, depth)) || obstacles->hold_deep(place);
+  };
+}
 
 }  // namespace
 
@@ -97,16 +110,10 @@ double allowed_depth(double thickness, double spacing) {
 FlowDomain domain_with_solids(const Scene& scene) {
   FlowDomain domain = scene.domain;
   const double depth = scene.method.spacing;
-  if (scene.tank) add_tank(room_of(*scene.tank), depth, domain);
+  if (scene.tank) add_tank(*scene.tank, depth, domain);
   if (scene.obstacles.empty() && !domain.gate) return domain;
-  Scene solid;
-  solid.tank = scene.tank;
-  solid.obstacles = scene.obstacles;
-  solid.method.spacing = scene.method.spacing;
-  domain.in_solid = [obstacles = Obstacles(solid), gate = domain.gate, depth](const Vec& place,
-                                                                              double time) {
-    return (gate && is_deep(*gate, place, time, depth)) || obstacles.hold_deep(place);
-  };
+  domain.in_solid =
+      in_dimensions(scene.dimensions(), [&]<int Dim>() { return in_solids_of<Dim>(scene); });
   return domain;
 }
 

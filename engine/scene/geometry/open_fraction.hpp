@@ -19,6 +19,9 @@ class OpenFraction {
   [[nodiscard]] double at(double time) const;
 
  private:
+  template <int Dim>
+  void integrate(const Scene& scene, const VecN<Dim>& point, double h);
+
   struct Held {
     Vec place;
     double weight;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 #include <vector>
 
@@ -42,6 +43,23 @@ template <int Dim>
 template <int Dim>
 [[nodiscard]] double measure(const Ellipsoid<Dim>& s) {
   return SpaceTraits<Dim>::unit_ball * s.semi_axes.prod();
+}
+
+// Surfaces of bodies of space, m^2; plane_shapes.hpp has the outlines of the plane.
+[[nodiscard]] inline double perimeter(const Cuboid<3>& s) {
+  return 2.0 * (s.size[0] * s.size[1] + s.size[1] * s.size[2] + s.size[2] * s.size[0]);
+}
+[[nodiscard]] inline double perimeter(const Ball<3>& s) {
+  return 4.0 * std::numbers::pi * s.radius * s.radius;
+}
+/// By Thomsen's formula, which is within 1.1 %.
+[[nodiscard]] inline double perimeter(const Ellipsoid<3>& s) {
+  constexpr double kPower = 1.6075;
+  const auto pair = [&](int one, int other) {
+    return std::pow(s.semi_axes[one] * s.semi_axes[other], kPower);
+  };
+  const double mean = (pair(0, 1) + pair(1, 2) + pair(2, 0)) / 3.0;
+  return 4.0 * std::numbers::pi * std::pow(mean, 1.0 / kPower);
 }
 
 template <int Dim>

@@ -10,11 +10,12 @@ namespace sluice {
 namespace solids {
 
 inline constexpr double kTiny = 1e-9;  // of the spacing: gaps and depths of rounding
-inline constexpr int kDirections = 32;
+template <int Dim>
+inline constexpr int kDirections = Dim == 2 ? 32 : 96;
 
 /// Whether a point is nearer to a shape than `distance` > 0, or in it.
-template <class AnyShape, class Point>
-bool is_nearer(const AnyShape& shape, const Point& point, double distance) {
+template <class Any, class Point>
+bool is_nearer(const Any& shape, const Point& point, double distance) {
   return signed_distance(shape, point) < distance;
 }
 /// The first order of an ellipse's distance is too coarse where its ends are sharp.
@@ -29,9 +30,16 @@ inline bool is_nearer(const Ellipse& shape, const VecN<2>& point, double distanc
 template <int Dim>
 SolidsN<Dim>::SolidsN(const std::vector<ShapeN<Dim>>& obstacles, std::optional<TankRoomN<Dim>> tank,
                       double spacing)
-    : tank_(tank), slack_(solids::kTiny * spacing), ways_(directions<Dim>(solids::kDirections)) {
+    : tank_(tank),
+      slack_(solids::kTiny * spacing),
+      ways_(directions<Dim>(solids::kDirections<Dim>)) {
+  // Across faces of cuboids the depth is then exact.
+  for (int axis = 0; Dim == 3 && axis < Dim; ++axis) {
+    ways_.emplace_back(Point::Unit(axis));
+    ways_.emplace_back(-Point::Unit(axis));
+  }
   for (const ShapeN<Dim>& shape : obstacles) {
-    bodies_.push_back({&shape, grown(bounds(shape), slack_)});
+    bodies_.push_back({shape, grown(bounds(shape), slack_)});
   }
 }
 
@@ -45,7 +53,7 @@ bool SolidsN<Dim>::holds(const Point& p) const {
   if (depth_in_walls(p) > 0.0) return true;
   return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
     return body.box.contains(p) &&
-           (contains(*body.shape, p) || signed_distance(*body.shape, p) <= slack_);
+           (contains(body.shape, p) || signed_distance(body.shape, p) <= slack_);
   });
 }
 
@@ -56,7 +64,7 @@ bool SolidsN<Dim>::leaves_room(const Point& p, double margin) const {
   return std::none_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
     const Point beyond = (body.box.min - p).cwiseMax(p - body.box.max);
     if (!(beyond.maxCoeff() < enough)) return false;
-    return std::visit([&](const auto& s) { return solids::is_nearer(s, p, enough); }, *body.shape);
+    return std::visit([&](const auto& s) { return solids::is_nearer(s, p, enough); }, body.shape);
   });
 }
 
@@ -64,7 +72,7 @@ template <int Dim>
 double SolidsN<Dim>::depth(const Point& p, double most) const {
   double deepest = depth_in_walls(p);
   for (const Body& body : bodies_) {
-    if (body.box.contains(p)) deepest = std::max(deepest, -signed_distance(*body.shape, p));
+    if (body.box.contains(p)) deepest = std::max(deepest, -signed_distance(body.shape, p));
   }
   if (deepest >= most || !holds(p)) return deepest;
   double nearest = most;

@@ -15,7 +15,7 @@ class SolidsN {
  public:
   using Point = VecN<Dim>;
 
-  /// `obstacles` must outlive this; `spacing` in m.
+  /// `spacing` in m.
   SolidsN(const std::vector<ShapeN<Dim>>& obstacles, std::optional<TankRoomN<Dim>> tank,
           double spacing);
 
@@ -34,7 +34,7 @@ class SolidsN {
 
  private:
   struct Body {
-    const ShapeN<Dim>* shape;
+    ShapeN<Dim> shape;
     BoxN<Dim> box;
   };
 
@@ -44,11 +44,10 @@ class SolidsN {
   std::vector<Point> ways_;  ///< in which a depth is sought
 };
 
-using Solids = SolidsN<kDim>;
-
-/// The solids of a scene, which must outlive them.
-[[nodiscard]] inline Solids solids_of(const Scene& scene) {
-  return {scene.obstacles, room_of(scene), scene.method.spacing};
+/// The solids of a scene of as many dimensions.
+template <int Dim>
+[[nodiscard]] SolidsN<Dim> solids_of(const Scene& scene) {
+  return {shapes_as<Dim>(scene.obstacles), room_of<Dim>(scene), scene.method.spacing};
 }
 
 }  // namespace sluice

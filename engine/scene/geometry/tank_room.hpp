@@ -48,13 +48,14 @@ struct TankRoomN {
   }
 };
 
-using TankRoom = TankRoomN<kDim>;
-
-[[nodiscard]] inline TankRoom room_of(const Tank& tank) {
-  return {Vec(tank.width, tank.height), tank.open_top};
+/// Of a tank in as many dimensions.
+template <int Dim>
+[[nodiscard]] TankRoomN<Dim> room_of(const Tank& tank) {
+  return {tank.size(), tank.open_top};
 }
-[[nodiscard]] inline std::optional<TankRoom> room_of(const Scene& scene) {
-  return scene.tank ? std::optional(room_of(*scene.tank)) : std::nullopt;
+template <int Dim>
+[[nodiscard]] std::optional<TankRoomN<Dim>> room_of(const Scene& scene) {
+  return scene.tank ? std::optional(room_of<Dim>(*scene.tank)) : std::nullopt;
 }
 
 }  // namespace sluice

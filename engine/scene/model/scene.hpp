@@ -15,17 +15,24 @@
 
 namespace sluice {
 
-/// A box of solid walls around [0, width] x [0, height], with a lid or without.
+/// A box of solid walls around [0, size()], with a lid or without.
 struct Tank {
-  double width = 0.0;
-  double height = 0.0;
+  double width = 0.0;           ///< along x, m
+  double height = 0.0;          ///< along y, m
+  std::optional<double> depth;  ///< along z, m; in space only
   bool open_top = true;
 
-  [[nodiscard]] Box interior() const { return {Vec::Zero(), Vec(width, height)}; }
+  [[nodiscard]] Vec size() const {
+    if (depth) return Vec3(width, height, *depth);
+    return Vec2(width, height);
+  }
+  [[nodiscard]] Box interior() const {
+    return {filled_vec<kAnyDim>(0.0, dimensions_of(size())), size()};
+  }
 };
 
-/// A wall across the tank, on its floor, that holds the fluid on its left back and is lifted from
-/// t = 0 on. Its thickness, to the right of x, is that of all walls: the kernel's support.
+/// A wall across the whole tank, on its floor, that holds the fluid on its left back and is lifted
+/// from t = 0 on. Its thickness, to the right of x, is that of all walls: the kernel's support.
 struct Gate {
   double x = 0.0;       ///< the side that the fluid touches, m
   double height = 0.0;  ///< m; parsed default: the tank's height
@@ -39,9 +46,9 @@ enum class InitialPressure {
 
 struct FluidRegion {
   Shape shape;
-  Vec velocity = Vec::Zero();           ///< m/s
-  std::optional<double> strain_rate;    ///< A of v = A (x, -y) about the middle, 1/s
-  std::optional<double> rotation_rate;  ///< w of v = w (-y, x) about the middle, 1/s
+  Vec velocity = filled_vec<kAnyDim>(0.0);  ///< m/s
+  std::optional<double> strain_rate;        ///< A of v = A (x, -y) about the middle, 1/s
+  std::optional<double> rotation_rate;      ///< w of v = w (-y, x) about the middle, 1/s
   InitialPressure pressure = InitialPressure::hydrostatic;
 };
 
@@ -53,8 +60,9 @@ enum class SensorKind { pressure, surface_height, surge_front, column_height, en
 struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::pressure;
-  Vec position = Vec::Zero();     ///< pressure, arrival: the point, m; surface_height and
-                                  ///< column_height: x only; otherwise zero
+  /// pressure, arrival: the point, m; surface_height and column_height: a place on the floor;
+  /// otherwise zero.
+  Vec position = filled_vec<kAnyDim>(0.0);
   double smoothing_length = 0.0;  ///< pressure only, m; parsed default: the scene's h
   /// Pressure only, Pa above that of a free surface, which is 0: of the air in what neither fluid
   /// nor wall fills around the point. Absent: eq. 11, whose mean is over the fluid alone.
@@ -129,6 +137,8 @@ struct Scene {
   std::optional<Scales> scales;
   std::optional<SceneReference> reference;
   double end_time = 0.0;  ///< s; the run ends at the first step at or after it
+
+  [[nodiscard]] int dimensions() const { return method.dimensions(); }
 };
 
 }  // namespace sluice

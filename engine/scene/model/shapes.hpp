@@ -54,6 +54,28 @@ struct ShapesOf<2> {
 template <int Dim>
 using ShapeN = typename ShapesOf<Dim>::Any;
 
-using Shape = ShapeN<kDim>;
+/// A shape of any number of dimensions. All of a scene are of the scene's.
+using Shape = std::variant<Rectangle, Circle, Ellipse, Polygon, Cuboid<3>, Ball<3>, Ellipsoid<3>>;
+
+[[nodiscard]] inline int dimensions_of(const Shape& shape) {
+  return std::visit([]<class S>(const S&) { return S::dimensions; }, shape);
+}
+
+/// The shape among those of its dimensions. Throws std::bad_variant_access where it has others.
+template <int Dim>
+[[nodiscard]] ShapeN<Dim> shape_as(const Shape& shape) {
+  return std::visit(
+      []<class S>(const S& s) -> ShapeN<Dim> {
+        if constexpr (S::dimensions == Dim) return s;
+        throw std::bad_variant_access();
+      },
+      shape);
+}
+template <int Dim>
+[[nodiscard]] std::vector<ShapeN<Dim>> shapes_as(const std::vector<Shape>& shapes) {
+  std::vector<ShapeN<Dim>> result;
+  for (const Shape& shape : shapes) result.push_back(shape_as<Dim>(shape));
+  return result;
+}
 
 }  // namespace sluice

@@ -6,7 +6,7 @@
 namespace sluice {
 
 /// The alternatives of Shape, in its order.
-enum class ShapeKind { rectangle, circle, ellipse, polygon };
+enum class ShapeKind { rectangle, circle, ellipse, polygon, box, sphere, ellipsoid };
 
 [[nodiscard]] inline ShapeKind kind_of(const Shape& shape) {
   return static_cast<ShapeKind>(shape.index());
@@ -21,16 +21,25 @@ enum class ShapeKind { rectangle, circle, ellipse, polygon };
       return Ellipse{};
     case ShapeKind::polygon:
       return Polygon{};
+    case ShapeKind::box:
+      return Cuboid<3>{};
+    case ShapeKind::sphere:
+      return Ball<3>{};
+    case ShapeKind::ellipsoid:
+      return Ellipsoid<3>{};
   }
   return Rectangle{};
 }
 
 // The words that scenes write for each enumeration.
-inline constexpr Words<ShapeKind, 4> kShapeWords{{
-    {"rectangle", ShapeKind::rectangle, "axis-aligned"},
-    {"circle", ShapeKind::circle, ""},
-    {"ellipse", ShapeKind::ellipse, "axis-aligned"},
-    {"polygon", ShapeKind::polygon, "without self-intersections"},
+inline constexpr Words<ShapeKind, 7> kShapeWords{{
+    {"rectangle", ShapeKind::rectangle, "in the plane, axis-aligned"},
+    {"circle", ShapeKind::circle, "in the plane"},
+    {"ellipse", ShapeKind::ellipse, "in the plane, axis-aligned"},
+    {"polygon", ShapeKind::polygon, "in the plane, without self-intersections"},
+    {"box", ShapeKind::box, "in space, axis-aligned"},
+    {"sphere", ShapeKind::sphere, "in space"},
+    {"ellipsoid", ShapeKind::ellipsoid, "in space, axis-aligned"},
 }};
 inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
     {"hydrostatic", InitialPressure::hydrostatic, "that of water at rest below the region's top"},
@@ -77,9 +86,8 @@ inline constexpr Words<SensorKind, 6> kSensorWords{{
     {"column_height", SensorKind::column_height,
      "surface_height at x, by default beside the left wall"},
     {"energy", SensorKind::energy,
-     "kinetic, potential (against gravity, zero at the origin) and internal energy of the fluid "
-     "per "
-     "metre of depth"},
+     "kinetic, potential (against gravity, zero at the origin) and internal energy of the fluid, "
+     "in the plane per metre of depth"},
     {"arrival", SensorKind::arrival,
      "the time at which a fluid particle first comes within 1.5 particle distances of a point"},
 }};

@@ -39,7 +39,7 @@ struct ExpEighth<double> {
 
 /// eq. 6 without its constants: exp(-R^2) for R < 3, else exactly 0. W and grad W share it.
 struct GaussianShape {
-  using Scalar = TruncatedGaussian;
+  using Scalar = TruncatedGaussianN<2>;
 
   template <class D, class V>
   static HWY_INLINE V slope(D d, V r_sq) {
@@ -61,7 +61,7 @@ struct GaussianShape {
 
 /// Wendland C2 without its constants; zero from R = 2 on by the clamp of 1 - R/2.
 struct WendlandShape {
-  using Scalar = WendlandC2;
+  using Scalar = WendlandC2N<2>;
 
   template <class D, class V>
   static HWY_INLINE V slope(D d, V r_sq) {

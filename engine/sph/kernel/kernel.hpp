@@ -51,37 +51,35 @@ struct WendlandC2N {
   }
 };
 
-using TruncatedGaussian = TruncatedGaussianN<kDim>;
-using WendlandC2 = WendlandC2N<kDim>;
-
 /// Distance at which W becomes zero, in smoothing lengths.
 [[nodiscard]] inline double kernel_support(KernelKind kind) {
-  return kind == KernelKind::truncated_gaussian ? TruncatedGaussian::support : WendlandC2::support;
+  return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<kMostDim>::support
+                                                : WendlandC2N<kMostDim>::support;
 }
 
 /// value(R^2) of the kernel that a method names.
-template <int Dim = kDim>
+template <int Dim>
 [[nodiscard]] double kernel_value(KernelKind kind, double r_sq) {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::value(r_sq)
                                                 : WendlandC2N<Dim>::value(r_sq);
 }
 
 /// slope(R^2) of the kernel that a method names.
-template <int Dim = kDim>
+template <int Dim>
 [[nodiscard]] double kernel_slope(KernelKind kind, double r_sq) {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::slope(r_sq)
                                                 : WendlandC2N<Dim>::slope(r_sq);
 }
 
 /// The constant of value(R^2).
-template <int Dim = kDim>
+template <int Dim>
 [[nodiscard]] double kernel_value_scale(KernelKind kind) {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::value_scale
                                                 : WendlandC2N<Dim>::value_scale;
 }
 
 /// The constant of slope(R^2).
-template <int Dim = kDim>
+template <int Dim>
 [[nodiscard]] double kernel_slope_scale(KernelKind kind) {
   return kind == KernelKind::truncated_gaussian ? TruncatedGaussianN<Dim>::slope_scale
                                                 : WendlandC2N<Dim>::slope_scale;

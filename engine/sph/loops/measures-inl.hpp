@@ -51,8 +51,6 @@ void measure(const ParticleSpan<Dim>& p, const MethodN<Dim>& method, const FlowD
   const V sound_sq = hn::Set(d, method.sound_speed * method.sound_speed);
   const V most_excess = hn::Set(d, method.most_density_excess());
   const V over_from = hn::Set(d, domain.over_from());
-  const V rim_left = hn::Set(d, domain.rim_left);
-  const V rim_right = hn::Set(d, domain.rim_right);
   const V walls_reach = hn::Set(d, domain.walls_reach);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto used = at(p.id, s) >= hn::Zero(d);
@@ -66,7 +64,7 @@ void measure(const ParticleSpan<Dim>& p, const MethodN<Dim>& method, const FlowD
     front = hn::Max(front, hn::IfThenElse(used, x[0], front));
     const V y = x[kUpAxis];
     const auto inside = within<Dim>(d, domain.box, x);
-    const auto over = hn::And(y >= over_from, hn::Or(x[0]<rim_left, x[0]> rim_right));
+    const auto over = hn::AndNot(within<Dim>(d, domain.rim, x), y >= over_from);
     const auto in_wall = hn::AndNot(within<Dim>(d, domain.room, x), y < walls_reach);
     const auto kept = hn::AndNot(hn::Or(over, in_wall), inside);
     const auto fit = hn::And(v_sq <= sound_sq, hn::Abs(rho) <= most_excess);

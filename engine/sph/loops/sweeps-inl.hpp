@@ -1,5 +1,5 @@
-// The loops over pairs, chosen for a method. Included once per SIMD target by sweeps_float.cpp and
-// sweeps_double.cpp.
+// The loops over pairs, chosen for a method. Included once per SIMD target by each
+// sweeps_<type>_<d>.cpp.
 
 #if defined(SLUICE_SWEEPS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SLUICE_SWEEPS_INL

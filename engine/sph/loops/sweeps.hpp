@@ -101,8 +101,12 @@ template <typename T, int Dim>
 [[nodiscard]] Sweeps<T, Dim> select_sweeps(const MethodN<Dim>& method, const std::string& target);
 
 template <>
-Sweeps<float, 2> select_sweeps<float, 2>(const Method&, const std::string&);
+Sweeps<float, 2> select_sweeps<float, 2>(const MethodN<2>&, const std::string&);
 template <>
-Sweeps<double, 2> select_sweeps<double, 2>(const Method&, const std::string&);
+Sweeps<double, 2> select_sweeps<double, 2>(const MethodN<2>&, const std::string&);
+template <>
+Sweeps<float, 3> select_sweeps<float, 3>(const MethodN<3>&, const std::string&);
+template <>
+Sweeps<double, 3> select_sweeps<double, 3>(const MethodN<3>&, const std::string&);
 
 }  // namespace sluice

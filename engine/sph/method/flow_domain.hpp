@@ -30,15 +30,13 @@ struct FlowDomainN {
   BoxN<Dim> box;                   ///< a particle that leaves it is removed
   std::optional<double> wall_top;  ///< m; leaving above it is overtopping, below it a leak; absent:
                                    ///< no open tank
-  /// m; outside of these x a particle is over the wall from over_from() on and removed at once, so
-  /// that what falls down behind a wall is not taken for a leak.
-  double rim_left = -std::numeric_limits<double>::infinity();
-  double rim_right = std::numeric_limits<double>::infinity();
+  /// m; outside of it a particle is over the wall from over_from() on and removed at once, so that
+  /// what falls down behind a wall is not taken for a leak. It has no end upwards or downwards.
+  BoxN<Dim> rim = BoxN<Dim>::everywhere();
 
   /// m; what is outside of the room and below this height is deep in a wall of the tank. Of an open
   /// tank that is a little below wall_top: what comes over a rim may lie down on it.
-  BoxN<Dim> room{VecN<Dim>::Constant(-std::numeric_limits<double>::infinity()),
-                 VecN<Dim>::Constant(std::numeric_limits<double>::infinity())};
+  BoxN<Dim> room = BoxN<Dim>::everywhere();
   double walls_reach = std::numeric_limits<double>::infinity();
   std::optional<GateMotionN<Dim>> gate;
   /// Whether a place is in an obstacle or in the gate at time t; empty: there is none. Asked once
@@ -52,13 +50,31 @@ struct FlowDomainN {
   }
   /// Whether a particle there stays in the run.
   [[nodiscard]] bool keeps(const VecN<Dim>& p) const {
-    const bool over = p[kUpAxis] >= over_from() && !(p.x() >= rim_left && p.x() <= rim_right);
+    const bool over = p[kUpAxis] >= over_from() && !rim.contains(p);
     const bool in_wall = p[kUpAxis] < walls_reach && !room.contains(p);
     return box.contains(p) && !over && !in_wall;
   }
 };
 
-using GateMotion = GateMotionN<kDim>;
-using FlowDomain = FlowDomainN<kDim>;
+using GateMotion = GateMotionN<kAnyDim>;
+using FlowDomain = FlowDomainN<kAnyDim>;
+
+/// The same domain for another type of vectors, of as many dimensions.
+template <int To, int From>
+[[nodiscard]] FlowDomainN<To> domain_as(const FlowDomainN<From>& domain) {
+  FlowDomainN<To> result;
+  result.box = domain.box;
+  result.wall_top = domain.wall_top;
+  result.rim = domain.rim;
+  result.room = domain.room;
+  result.walls_reach = domain.walls_reach;
+  if (domain.gate) result.gate = GateMotionN<To>{domain.gate->place, domain.gate->speed};
+  if (domain.in_solid) {
+    result.in_solid = [ask = domain.in_solid](const VecN<To>& place, double time) {
+      return ask(place, time);
+    };
+  }
+  return result;
+}
 
 }  // namespace sluice

@@ -17,17 +17,20 @@ enum class Integrator {
 /// Arithmetic of the pair sums. The particles' state is kept in double either way.
 enum class Precision { mixed, double_precision };
 
-/// The scheme and its constants: with a FlowDomain all that the solver must know besides the
-/// particles.
+/// What a method chooses beside its discretisation.
 /// Each term of terms/list.hpp is an optional member. An empty one is left out: its sum is not
 /// computed, its fields are not allocated.
-template <int Dim>
-struct MethodN : DiscretisationN<Dim>, OptionalTerms<AllTerms> {
+struct SchemeChoices : OptionalTerms<AllTerms> {
   Integrator integrator = Integrator::modified_leap_frog;
   Precision precision = Precision::mixed;
   double courant = 0.25;  ///< C of eq. 18
   WallPressure wall_pressure = WallPressure::extrapolated;
+};
 
+/// The scheme and its constants: with a FlowDomain all that the solver must know besides the
+/// particles.
+template <int Dim>
+struct MethodN : DiscretisationN<Dim>, SchemeChoices {
   /// A particle is excluded whose density is farther than this from rho_0, over rho_0.
   static constexpr double kDensityLeeway = 0.3;
   [[nodiscard]] double most_density_excess() const {
@@ -42,6 +45,16 @@ struct MethodN : DiscretisationN<Dim>, OptionalTerms<AllTerms> {
   }
 };
 
-using Method = MethodN<kDim>;
+using Method = MethodN<kAnyDim>;
+
+/// The same method for another type of vectors, of as many dimensions.
+template <int To, int From>
+[[nodiscard]] MethodN<To> method_as(const MethodN<From>& method) {
+  MethodN<To> result;
+  static_cast<DiscretisationNumbers&>(result) = method;
+  static_cast<SchemeChoices&>(result) = method;
+  result.gravity = method.gravity;
+  return result;
+}
 
 }  // namespace sluice

@@ -36,6 +36,7 @@ Energy energy_of(const Method& method, const RemovedParticle& removed) {
 }
 
 void Departed::add(const Method& method, const RemovedParticle& removed) {
+  if (count == 0) momentum = filled_vec<kAnyDim>(0.0, method.dimensions());
   ++count;
   mass += method.particle_mass();
   momentum += method.particle_mass() * removed.velocity;
@@ -43,6 +44,8 @@ void Departed::add(const Method& method, const RemovedParticle& removed) {
 }
 
 void Departed::merge(const Departed& other) {
+  if (momentum.size() != other.momentum.size())
+    momentum = filled_vec<kAnyDim>(0.0, dimensions_of(other.momentum));
   count += other.count;
   mass += other.mass;
   momentum += other.momentum;

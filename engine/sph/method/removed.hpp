@@ -28,8 +28,8 @@ template <int Dim>
 /// All that particles of one kind took along when they left the sums.
 struct Departed {
   std::size_t count = 0;
-  double mass = 0.0;           ///< kg/m
-  Vec momentum = Vec::Zero();  ///< kg/s
+  double mass = 0.0;                        ///< kg/m
+  Vec momentum = filled_vec<kAnyDim>(0.0);  ///< kg m/s
   Energy energy;
 
   void add(const Method& method, const RemovedParticle& removed);

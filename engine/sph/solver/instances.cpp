@@ -6,5 +6,6 @@
 namespace sluice {
 
 template class SolverN<2>;
+template class SolverN<3>;
 
 }  // namespace sluice

@@ -1,6 +1,7 @@
 #include "engine/sph/solver/machine_speed.hpp"
 
 #include <algorithm>
+#include <array>
 #include <ctime>
 #include <mutex>
 #include <string>
@@ -9,14 +10,20 @@
 #include <utility>
 #include <vector>
 
+#include "engine/space/lattice.hpp"
 #include "engine/sph/solver/solver.hpp"
 
 namespace sluice {
 namespace {
 
 // Large enough that what a step costs beside its particles is a small part, as it is in a run.
-constexpr int kColumns = 96;
-constexpr int kRows = 32;
+/// Particles along each axis, of about as many in all.
+template <int Dim>
+constexpr std::array<int, Dim> kSize{};
+template <>
+constexpr std::array<int, 2> kSize<2>{96, 32};
+template <>
+constexpr std::array<int, 3> kSize<3>{20, 16, 16};
 constexpr int kLayers = 3;
 constexpr int kParts = 3;  // the fastest counts: the others were disturbed
 constexpr double kPartSeconds = 0.008;
@@ -33,8 +40,9 @@ double processor_seconds() {
 /// The choices that the cost of a step depends on: of a term, whether it is there, its form, and
 /// its words and intervals, but not its strength.
 std::vector<double> cost_of(const Method& m) {
-  std::vector<double> cost{static_cast<double>(m.kernel), static_cast<double>(m.integrator),
-                           static_cast<double>(m.precision), m.smoothing_length / m.spacing};
+  std::vector<double> cost{static_cast<double>(m.dimensions()), static_cast<double>(m.kernel),
+                           static_cast<double>(m.integrator), static_cast<double>(m.precision),
+                           m.smoothing_length / m.spacing};
   for_each_term(AllTerms{}, [&]<class Term>() {
     const auto& term = m.term<Term>();
     const auto add = [&](const auto& parameter) {
@@ -50,39 +58,50 @@ std::vector<double> cost_of(const Method& m) {
 }
 
 /// The same scheme for particles one unit apart, at rest without gravity.
-Method unit_method(const Method& wanted) {
-  Method m = wanted;
+template <int Dim>
+MethodN<Dim> unit_method(const Method& wanted) {
+  MethodN<Dim> m = method_as<Dim>(wanted);
   m.smoothing_length = wanted.smoothing_length / wanted.spacing;
   m.spacing = m.sound_speed = m.reference_density = 1.0;
-  m.gravity = Vec::Zero();
+  m.gravity.setZero();
   if (m.laminar_viscosity) m.laminar_viscosity->nu = 1e-3;
   return m;
 }
 
-Solver small_tank(const Method& method, std::string_view simd) {
-  SolverState state;
-  std::vector<Vec> walls;
-  Particles& p = state.particles;
-  for (int row = -kLayers; row < kRows; ++row) {
-    for (int column = -kLayers; column < kColumns + kLayers; ++column) {
-      const Vec place(column + 0.5, row + 0.5);
-      if (row < 0 || column < 0 || column >= kColumns) {
-        walls.push_back(place);
-        continue;
-      }
-      p.id.push_back(static_cast<double>(p.size()));
-      append(p.position, place);
-      append(p.velocity, Vec(Vec::Zero()));
-      p.density_excess.push_back(0.0);
-    }
+template <int Dim>
+SolverN<Dim> small_tank(const MethodN<Dim>& method, std::string_view simd) {
+  SolverStateN<Dim> state;
+  std::vector<VecN<Dim>> walls;
+  ParticlesN<Dim>& p = state.particles;
+  FlowDomainN<Dim> domain;
+  domain.box = {filled_vec<Dim>(-2.0 * kLayers), filled_vec<Dim>(2.0 * kLayers)};
+  CellN<Dim> last{};
+  for (int axis = 0; axis < Dim; ++axis) {
+    const int size = kSize<Dim>[static_cast<std::size_t>(axis)];
+    domain.box.max[axis] += size;
+    last[static_cast<std::size_t>(axis)] = axis == kUpAxis ? size - 1 : size + kLayers - 1;
   }
-  FlowDomain domain;
-  domain.box = {Vec::Constant(-2 * kLayers), Vec(kColumns + 2 * kLayers, kRows + 2 * kLayers)};
+  for_each_cell<Dim>(shifted<Dim>({}, -kLayers), last, [&](const CellN<Dim>& cell) {
+    const VecN<Dim> place = as_vector<Dim>(cell).array() + 0.5;
+    bool inside = true;
+    for (std::size_t axis = 0; axis < Dim; ++axis) {
+      inside = inside && cell[axis] >= 0 && cell[axis] < kSize<Dim>[axis];
+    }
+    if (!inside) {
+      walls.push_back(place);
+      return;
+    }
+    p.id.push_back(static_cast<double>(p.size()));
+    append(p.position, place);
+    append(p.velocity, filled_vec<Dim>(0.0));
+    p.density_excess.push_back(0.0);
+  });
   return {method, domain, state, walls, {1, std::string(simd)}};
 }
 
+template <int Dim>
 double measure(const Method& method, std::string_view simd) {
-  Solver solver = small_tank(unit_method(method), simd);
+  SolverN<Dim> solver = small_tank(unit_method<Dim>(method), simd);
   solver.step();  // sorts and allocates
   double best = 0.0;
   for (int part = 0; part < kParts; ++part) {
@@ -94,7 +113,7 @@ double measure(const Method& method, std::string_view simd) {
       ++steps;
       seconds = processor_seconds() - start;
     }
-    best = std::max(best, steps * kColumns * kRows / seconds);
+    best = std::max(best, steps * static_cast<double>(solver.particle_count()) / seconds);
   }
   return best / kMotion;
 }
@@ -109,7 +128,8 @@ double particle_steps_per_core_second(const Method& method, std::string_view sim
   const std::scoped_lock lock(mutex);
   const auto found = std::ranges::find(known, cost, &Known::first);
   if (found != known.end()) return found->second;
-  const double speed = measure(method, simd);
+  const double speed =
+      in_dimensions(method.dimensions(), [&]<int Dim>() { return measure<Dim>(method, simd); });
   if (known.size() == kKept) known.clear();
   known.emplace_back(cost, speed);
   return speed;

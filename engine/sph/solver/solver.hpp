@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "engine/sph/method/flow_domain.hpp"
@@ -118,6 +119,42 @@ class SolverN {
   std::unique_ptr<Impl> impl_;
 };
 
-using Solver = SolverN<kDim>;
+/// A solver of as many dimensions as the method has, for those who run scenes. All that SolverN
+/// says holds. Throws std::invalid_argument when domain, state or walls have another number.
+class Solver {
+ public:
+  Solver(const Method& method, const FlowDomain& domain, const SolverState& state,
+         const std::vector<Vec>& walls, const Execution& execution);
+
+  void step();
+
+  [[nodiscard]] int dimensions() const;
+  [[nodiscard]] std::uint64_t step_count() const;
+  [[nodiscard]] double time() const;           ///< s
+  [[nodiscard]] double time_step() const;      ///< length of the last step, s
+  [[nodiscard]] StepLimit step_limit() const;  ///< what limited it
+  [[nodiscard]] std::size_t particle_count() const;
+  [[nodiscard]] std::size_t wall_count() const;
+  [[nodiscard]] std::size_t removed_count() const;
+  [[nodiscard]] RemovedParticle removed(std::size_t i) const;
+  [[nodiscard]] const Extremes& extremes() const;
+  [[nodiscard]] std::string_view simd_target() const;
+  [[nodiscard]] int threads() const;
+  [[nodiscard]] SolverState state() const;
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& body) const;
+  [[nodiscard]] Energy energy() const;
+  [[nodiscard]] Probe pressure_at(const Vec& point, double h) const;
+  [[nodiscard]] Probe surface_height_at(const Vec& place) const;
+  [[nodiscard]] Probe surge_front() const;
+  [[nodiscard]] double distance_to_fluid(const Vec& point) const;
+  [[nodiscard]] std::vector<double> wall_pressures() const;
+  [[nodiscard]] const std::array<double, kPassCount>& pass_seconds() const;
+  [[nodiscard]] std::uint64_t sort_count() const;
+  [[nodiscard]] double pair_slots() const;
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+ private:
+  std::variant<SolverN<2>, SolverN<3>> solver_;
+};
 
 }  // namespace sluice

@@ -65,7 +65,7 @@ SheetWave sheet_wave(const Method& m, double k, double approaching) {
         const VecN<2> distance = spacing * VecN<2>(n, i - j);
         const double r_sq = distance.squaredNorm();
         if (r_sq == 0.0 || r_sq >= support * support) continue;
-        add({i, j, distance, spacing * spacing * kernel_slope(m.kernel, r_sq),
+        add({i, j, distance, spacing * spacing * kernel_slope<2>(m.kernel, r_sq),
              std::polar(1.0, -k * distance.x())},
             m, approaching, w);
       }

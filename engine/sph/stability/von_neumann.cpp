@@ -80,7 +80,7 @@ LatticeStability::LatticeStability(const Method& method, Surface surface)
       const VecN<2> distance = spacing_ * VecN<2>(i, j);
       if ((i == 0 && j == 0) || distance.norm() >= support) continue;
       neighbours_.push_back(
-          {distance, spacing_ * spacing_ * kernel_slope(method.kernel, distance.squaredNorm())});
+          {distance, spacing_ * spacing_ * kernel_slope<2>(method.kernel, distance.squaredNorm())});
     }
   }
   const double step = std::numbers::pi / spacing_ / kWaves;

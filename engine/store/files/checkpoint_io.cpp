@@ -21,8 +21,9 @@ constexpr std::size_t kDigits = 12;
 /// About the size of the image.
 std::uint64_t expected_bytes(const Checkpoint& checkpoint) {
   std::uint64_t bytes = file_bytes(checkpoint.samples);
-  for (const Field& field : kFields) {
-    bytes += field.values.of(checkpoint.solver.particles).size() * sizeof(double);
+  const Particles& particles = checkpoint.solver.particles;
+  for (const Field& field : fields_in(particles.position.size())) {
+    bytes += field.values.of(particles).size() * sizeof(double);
   }
   return bytes;
 }

@@ -37,13 +37,25 @@ void identity(Archive& archive, Subject& checkpoint) {
   converted(archive, "integrator", checkpoint.integrator);
 }
 
-/// The fields of kFields that particles of this integrator carry.
+/// How many dimensions the particles of a file have: files of the plane do not say it.
+template <class Archive>
+void dimensions_in(Archive& archive, std::uint64_t& dimensions) {
+  archive.attribute_or("/", "dimensions", dimensions, std::uint64_t{kPlaneDim});
+  if (dimensions != 2 && dimensions != 3) {
+    throw_corrupt(fmt::format("the particles have {} dimensions; 2 or 3 are expected", dimensions));
+  }
+}
+
+/// The fields that particles of this integrator carry.
 template <class Archive, class Subject>
 void particle_fields(Archive& archive, Integrator integrator, Subject& particles) {
   archive.group("/particles");
+  std::uint64_t dimensions = particles.position.size();
+  dimensions_in(archive, dimensions);
+  if constexpr (Archive::kReads) particles = no_particles(static_cast<int>(dimensions));
   archive.count("/particles", "count", particles.position.front());
   const Extents shape{particles.size()};
-  for (const Field& field : kFields) {
+  for (const Field& field : fields_in(particles.position.size())) {
     if (carries(integrator, field)) {
       archive.data_set("/particles/" + std::string(field.name), field.values.of(particles), shape,
                        {std::string(field.unit), std::string(field.description)});
@@ -68,9 +80,15 @@ void removed_column(Archive& archive, const std::string& name, List& list, const
 bool is_place(const RemovedField& field) { return field.unit == "m"; }
 
 template <class Archive, class Subject>
-void removed_particles(Archive& archive, Subject& list, RemovedLayout layout) {
+void removed_particles(Archive& archive, Subject& list, std::size_t dimensions,
+                       RemovedLayout layout) {
   archive.group("/retired");
   archive.count("/retired", "count", list);
+  if constexpr (Archive::kReads) {
+    for (RemovedParticle& removed : list) {
+      removed.position = removed.velocity = filled_vec<kAnyDim>(0.0, static_cast<int>(dimensions));
+    }
+  }
   const auto column = [&](const char* name, auto RemovedParticle::*member, const Label& label) {
     removed_column(
         archive, name, list, [&](auto& removed) -> auto& { return removed.*member; }, label);
@@ -79,7 +97,7 @@ void removed_particles(Archive& archive, Subject& list, RemovedLayout layout) {
   column("cause", &RemovedParticle::cause, {"1", kCauses});
   column("step", &RemovedParticle::step, {"1", "step at which it left the sums"});
   column("time", &RemovedParticle::time, {"s", "time at which it left the sums"});
-  for (const RemovedField& field : kRemovedFields) {
+  for (const RemovedField& field : removed_fields_in(dimensions)) {
     if (layout == RemovedLayout::places && !is_place(field)) continue;
     removed_column(archive, std::string(field.name),
                    list, [&](auto& removed) -> auto& { return field.value.of(removed); },
@@ -198,7 +216,8 @@ void physics(Archive& archive, Subject& checkpoint, const CheckpointLayout& layo
   archive.attribute("/", "time_step", checkpoint.solver.time_step);
   archive.attribute("/", "next_frame", checkpoint.next_snapshot);
   particle_fields(archive, checkpoint.integrator, checkpoint.solver.particles);
-  removed_particles(archive, checkpoint.solver.removed, layout.removed);
+  removed_particles(archive, checkpoint.solver.removed, checkpoint.solver.particles.position.size(),
+                    layout.removed);
   samples(archive, checkpoint.samples, layout.samples);
   guard_baselines(archive, checkpoint.guards);
 }
@@ -207,6 +226,9 @@ template <class Archive, class Subject>
 void snapshot_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.attribute("/", "step", frame.step);
   archive.attribute("/", "time", frame.time);
+  std::uint64_t dimensions = frame.position.size();
+  dimensions_in(archive, dimensions);
+  if constexpr (Archive::kReads) frame = empty_snapshot(frame.step, frame.time, dimensions);
   if (version > 1) {
     for (std::size_t axis = 0; axis < frame.position.size(); ++axis) {
       archive.attribute("/", "origin_" + std::string(axis_name(static_cast<Eigen::Index>(axis))),
@@ -216,7 +238,7 @@ void snapshot_layout(Archive& archive, Subject& frame, std::uint64_t version) {
   archive.group("/particles");
   archive.count("/particles", "count", frame.position.front());
   const Extents shape{frame.size()};
-  for (const SnapshotField& field : kSnapshotFields) {
+  for (const SnapshotField& field : snapshot_fields_in(frame.position.size())) {
     archive.data_set("/particles/" + std::string(field.name), field.values.of(frame), shape,
                      {std::string(field.unit), std::string(field.description)});
   }

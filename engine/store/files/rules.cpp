@@ -40,7 +40,7 @@ class Rules {
 };
 
 void require_particles(const Rules& rules, Integrator integrator, const Particles& particles) {
-  for (const Field& field : kFields) {
+  for (const Field& field : fields_in(particles.position.size())) {
     const std::vector<double>& values = field.values.of(particles);
     const std::string what = fmt::format("particle field '{}'", field.name);
     rules.require_count(what, values.size(), carries(integrator, field) ? particles.size() : 0);
@@ -53,7 +53,8 @@ void require_removed(const Rules& rules, const std::vector<RemovedParticle>& lis
     const std::string what = fmt::format("removed particle {}: ", i);
     rules.require_finite(what + "id", list[i].id);
     rules.require_finite(what + "time", list[i].time);
-    for (const RemovedField& field : kRemovedFields) {
+    for (const RemovedField& field :
+         removed_fields_in(static_cast<std::size_t>(list[i].position.size()))) {
       rules.require_finite(what + std::string(field.name), field.value.of(list[i]));
     }
   }

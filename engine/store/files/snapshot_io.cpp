@@ -11,6 +11,31 @@
 namespace sluice {
 namespace {
 
+template <int Dim>
+struct SnapshotFieldList;
+template <>
+struct SnapshotFieldList<2> {
+  static constexpr std::array fields{
+      SnapshotField{"x", "m", "position from the origin, horizontal", {&Snapshot::position, 0}},
+      SnapshotField{"y", "m", "position from the origin, vertical", {&Snapshot::position, 1}},
+      SnapshotField{"vx", "m/s", "velocity, horizontal", {&Snapshot::velocity, 0}},
+      SnapshotField{"vy", "m/s", "velocity, vertical", {&Snapshot::velocity, 1}},
+      SnapshotField{"pressure", "Pa", "pressure, eq. 3", &Snapshot::pressure},
+  };
+};
+template <>
+struct SnapshotFieldList<3> {
+  static constexpr std::array fields{
+      SnapshotField{"x", "m", "position from the origin along x", {&Snapshot::position, 0}},
+      SnapshotField{"y", "m", "position from the origin along y, up", {&Snapshot::position, 1}},
+      SnapshotField{"z", "m", "position from the origin along z", {&Snapshot::position, 2}},
+      SnapshotField{"vx", "m/s", "velocity along x", {&Snapshot::velocity, 0}},
+      SnapshotField{"vy", "m/s", "velocity along y", {&Snapshot::velocity, 1}},
+      SnapshotField{"vz", "m/s", "velocity along z", {&Snapshot::velocity, 2}},
+      SnapshotField{"pressure", "Pa", "pressure, eq. 3", &Snapshot::pressure},
+  };
+};
+
 std::vector<float> single(const std::vector<double>& values, double origin = 0.0) {
   std::vector<float> result(values.size());
   std::transform(values.begin(), values.end(), result.begin(),
@@ -31,8 +56,9 @@ double origin_of(const std::vector<double>& positions) {
 }
 
 Bytes encode(const Snapshot& frame) {
-  WriteArchive archive(frame.size() *
-                       (kSnapshotFields.size() * sizeof(float) + sizeof(std::uint64_t)));
+  WriteArchive archive(
+      frame.size() *
+      (snapshot_fields_in(frame.position.size()).size() * sizeof(float) + sizeof(std::uint64_t)));
   walk_format(archive, kSnapshotFormat);
   walk_snapshot(archive, frame);
   return archive.image();
@@ -49,13 +75,26 @@ Snapshot decode_snapshot(ByteSpan image) {
 
 }  // namespace
 
+Snapshot empty_snapshot(std::uint64_t step, double time, std::size_t dimensions) {
+  Snapshot frame;
+  frame.step = step;
+  frame.time = time;
+  frame.position = PerAxis<std::vector<float>>(dimensions);
+  frame.velocity = PerAxis<std::vector<float>>(dimensions);
+  frame.origin = filled_vec<kAnyDim>(0.0, static_cast<int>(dimensions));
+  return frame;
+}
+
+std::span<const SnapshotField> snapshot_fields_in(std::size_t dimensions) {
+  if (dimensions == 2) return SnapshotFieldList<2>::fields;
+  return SnapshotFieldList<3>::fields;
+}
+
 std::string snapshot_name(std::uint64_t index) { return fmt::format("frame-{:06}.h5", index); }
 
 Snapshot make_snapshot(const SolverState& state, const Method& method) {
   const Particles& particles = state.particles;
-  Snapshot frame;
-  frame.step = state.step;
-  frame.time = state.time;
+  Snapshot frame = empty_snapshot(state.step, state.time, particles.position.size());
   for (std::size_t axis = 0; axis < particles.position.size(); ++axis) {
     double& origin = frame.origin[static_cast<Eigen::Index>(axis)];
     origin = origin_of(particles.position[axis]);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +22,12 @@ namespace sluice {
 /// precision tells no particles apart far from zero.
 struct Snapshot {
   std::uint64_t step = 0;
-  double time = 0.0;                     ///< s
-  PerAxis<std::vector<float>> position;  ///< m, from the origin
-  PerAxis<std::vector<float>> velocity;  ///< m/s
-  std::vector<float> pressure;           ///< Pa
-  std::vector<std::uint64_t> id;         ///< number given at the start
-  Vec origin = Vec::Zero();              ///< m
+  double time = 0.0;                      ///< s
+  PerAxis<std::vector<float>> position;   ///< m, from the origin
+  PerAxis<std::vector<float>> velocity;   ///< m/s
+  std::vector<float> pressure;            ///< Pa
+  std::vector<std::uint64_t> id;          ///< number given at the start
+  Vec origin = filled_vec<kAnyDim>(0.0);  ///< m
 
   [[nodiscard]] std::size_t size() const { return position.front().size(); }
   /// Where particle i is, m.
@@ -34,9 +35,7 @@ struct Snapshot {
     return origin + vector_of(position, i).cast<double>();
   }
   /// Velocity of particle i, m/s.
-  [[nodiscard]] Eigen::Matrix<float, kDim, 1> velocity_of(std::size_t i) const {
-    return vector_of(velocity, i);
-  }
+  [[nodiscard]] auto velocity_of(std::size_t i) const { return vector_of(velocity, i); }
   friend bool operator==(const Snapshot&, const Snapshot&) = default;
 };
 
@@ -47,14 +46,11 @@ struct SnapshotField {
   FieldMember<Snapshot, std::vector<float>> values;
 };
 
+/// One without particles, of so many dimensions.
+[[nodiscard]] Snapshot empty_snapshot(std::uint64_t step, double time, std::size_t dimensions);
+
 /// What a snapshot holds of each particle beside its id.
-inline constexpr std::array kSnapshotFields{
-    SnapshotField{"x", "m", "position from the origin, horizontal", {&Snapshot::position, 0}},
-    SnapshotField{"y", "m", "position from the origin, vertical", {&Snapshot::position, 1}},
-    SnapshotField{"vx", "m/s", "velocity, horizontal", {&Snapshot::velocity, 0}},
-    SnapshotField{"vy", "m/s", "velocity, vertical", {&Snapshot::velocity, 1}},
-    SnapshotField{"pressure", "Pa", "pressure, eq. 3", &Snapshot::pressure},
-};
+[[nodiscard]] std::span<const SnapshotField> snapshot_fields_in(std::size_t dimensions);
 
 /// `frame-<index>.h5`, the index in 6 digits.
 [[nodiscard]] std::string snapshot_name(std::uint64_t index);

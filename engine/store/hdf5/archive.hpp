@@ -19,6 +19,7 @@ namespace sluice {
 // apart:
 //
 //   attribute(path, name, value)                   a number or a text of the object at `path`
+//   attribute_or(path, name, value, usual)         the same, left out where it is `usual`
 //   group(path)                                    a folder in the file
 //   data_set(path, values, shape, unit, description)
 //   count(path, name, vector)                      the length of `vector`; a reader makes it so
@@ -41,6 +42,11 @@ class WriteArchive {
   template <class T>
   void attribute(const std::string& path, const std::string& name, const T& value) {
     writer_.set_attribute(path, name, value);
+  }
+  template <class T>
+  void attribute_or(const std::string& path, const std::string& name, const T& value,
+                    const T& usual) {
+    if (value != usual) attribute(path, name, value);
   }
   void group(const std::string& path) { writer_.create_group(path); }
   template <class T>
@@ -72,6 +78,11 @@ class ReadArchive {
   void attribute(const std::string& path, const std::string& name, T& value) {
     reader_.attribute(path, name, value);
     met_[path].insert(name);
+  }
+  template <class T>
+  void attribute_or(const std::string& path, const std::string& name, T& value, const T& usual) {
+    value = usual;
+    if (reader_.has_attribute(path, name)) attribute(path, name, value);
   }
   void group(const std::string& path) { met_[path]; }
   template <class T>
@@ -118,6 +129,11 @@ class DigestArchive {
     add_text(path);
     add_text(name);
     add(value);
+  }
+  template <class T>
+  void attribute_or(const std::string& path, const std::string& name, const T& value,
+                    const T& usual) {
+    if (value != usual) attribute(path, name, value);
   }
   void group(const std::string&) {}
   template <class T>

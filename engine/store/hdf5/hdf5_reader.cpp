@@ -213,6 +213,11 @@ std::vector<Hdf5Object> Hdf5Reader::objects() const { return impl_->objects(); }
 std::vector<std::string> Hdf5Reader::attribute_names(const std::string& path) const {
   return impl_->attribute_names(path);
 }
+bool Hdf5Reader::has_attribute(const std::string& path, const std::string& name) const {
+  const std::vector<std::string> names = attribute_names(path);
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 ElementType Hdf5Reader::attribute_type(const std::string& path, const std::string& name) const {
   return impl_->attribute_type(path, name);
 }

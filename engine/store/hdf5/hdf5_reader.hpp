@@ -25,6 +25,7 @@ class Hdf5Reader {
   [[nodiscard]] std::vector<Hdf5Object> objects() const;
   /// Names of the attributes of the object at `path`, in order of names.
   [[nodiscard]] std::vector<std::string> attribute_names(const std::string& path) const;
+  [[nodiscard]] bool has_attribute(const std::string& path, const std::string& name) const;
   [[nodiscard]] ElementType attribute_type(const std::string& path, const std::string& name) const;
   [[nodiscard]] DataSetInfo info(const std::string& path) const;
 

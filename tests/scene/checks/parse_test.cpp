@@ -36,22 +36,22 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
   EXPECT_FALSE(s.tank->open_top);
 
   ASSERT_EQ(s.fluid.size(), 4U);
-  EXPECT_EQ(std::get<Rectangle>(s.fluid[0].shape).size, Vec(0.5, 0.5));
-  EXPECT_EQ(s.fluid[0].velocity, Vec(0.5, 0));
+  EXPECT_EQ(std::get<Rectangle>(s.fluid[0].shape).size, Vec2(0.5, 0.5));
+  EXPECT_EQ(s.fluid[0].velocity, Vec2(0.5, 0));
   EXPECT_EQ(s.fluid[0].pressure, InitialPressure::hydrostatic);
-  EXPECT_EQ(std::get<Circle>(s.fluid[1].shape).center, Vec(0.9, 0.8));
+  EXPECT_EQ(std::get<Circle>(s.fluid[1].shape).center, Vec2(0.9, 0.8));
   EXPECT_EQ(std::get<Circle>(s.fluid[1].shape).radius, 0.15);
   EXPECT_EQ(s.fluid[1].pressure, InitialPressure::zero);
-  EXPECT_EQ(std::get<Ellipse>(s.fluid[2].shape).semi_axes, Vec(0.2, 0.1));
-  EXPECT_EQ(s.fluid[2].velocity, Vec(0, 0));
-  EXPECT_EQ(std::get<Polygon>(s.fluid[3].shape).points[2], Vec(1.7, 0.4));
+  EXPECT_EQ(std::get<Ellipse>(s.fluid[2].shape).semi_axes, Vec2(0.2, 0.1));
+  EXPECT_EQ(s.fluid[2].velocity, Vec2(0, 0));
+  EXPECT_EQ(std::get<Polygon>(s.fluid[3].shape).points[2], Vec2(1.7, 0.4));
   ASSERT_EQ(s.obstacles.size(), 4U);
-  EXPECT_EQ(std::get<Ellipse>(s.obstacles[2]).center, Vec(1.3, 0.5));
+  EXPECT_EQ(std::get<Ellipse>(s.obstacles[2]).center, Vec2(1.3, 0.5));
 
   const Method& m = s.method;
-  EXPECT_EQ(m.gravity, Vec(0, -9.81));
-  EXPECT_EQ(s.domain.box.min, Vec(-1, -1));
-  EXPECT_EQ(s.domain.box.max, Vec(3, 2));
+  EXPECT_EQ(m.gravity, Vec2(0, -9.81));
+  EXPECT_EQ(s.domain.box.min, Vec2(-1, -1));
+  EXPECT_EQ(s.domain.box.max, Vec2(3, 2));
   EXPECT_EQ(m.reference_density, 998.2);
   EXPECT_EQ(m.sound_speed, 50);
   EXPECT_EQ(m.spacing, 0.05);
@@ -73,7 +73,7 @@ TEST(ParseScene, ReadsEachKeyIntoItsMember) {
 
   ASSERT_EQ(s.sensors.size(), 6U);
   EXPECT_EQ(s.sensors[0].kind, SensorKind::pressure);
-  EXPECT_EQ(s.sensors[0].position, Vec(2, 0.1));
+  EXPECT_EQ(s.sensors[0].position, Vec2(2, 0.1));
   EXPECT_EQ(s.sensors[0].smoothing_length, 0.1);
   EXPECT_EQ(s.sensors[1].kind, SensorKind::surface_height);
   EXPECT_EQ(s.sensors[1].position.x(), 0.3);
@@ -115,7 +115,7 @@ TEST(ParseScene, TurnsAGateIntoAWallOfThreeSpacingsThatIsLifted) {
   const Scene s = parsed(text);
   ASSERT_TRUE(s.gate && s.domain.gate && s.method.laminar_viscosity);
   EXPECT_EQ(s.gate->height, 1.0) << "the tank's";
-  EXPECT_EQ(s.domain.gate->place.min, Vec(1.0, 0.0));
+  EXPECT_EQ(s.domain.gate->place.min, Vec2(1.0, 0.0));
   EXPECT_NEAR(s.domain.gate->place.max.x(), 1.15, 1e-12);
   EXPECT_EQ(s.domain.gate->place.max.y(), 1.0);
   EXPECT_EQ(s.domain.gate->speed, 3.46);

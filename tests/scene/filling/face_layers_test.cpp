@@ -22,15 +22,15 @@ Method coarse() {
   return method;
 }
 
-bool nothing_covered(const Vec&) { return false; }
+bool nothing_covered(const Vec2&) { return false; }
 
 Polygon box(double x, double y, double width, double height) {
-  return {{Vec(x, y), Vec(x + width, y), Vec(x + width, y + height), Vec(x, y + height)}};
+  return {{Vec2(x, y), Vec2(x + width, y), Vec2(x + width, y + height), Vec2(x, y + height)}};
 }
 
 Polygon turned(const Polygon& polygon, double angle) {
   Polygon result;
-  for (const Vec& p : polygon.points) {
+  for (const Vec2& p : polygon.points) {
     result.points.emplace_back(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
                                std::sin(angle) * p.x() + std::cos(angle) * p.y());
   }
@@ -41,10 +41,10 @@ TEST(FaceLayers, OfABoxOfWholeSpacingsAreALatticeWhereverItStands) {
   // 20 x 12 cells less the 14 x 6 that are deeper than three layers.
   for (const double angle : {0.0, 0.3}) {
     const Polygon solid = turned(box(0.0037, 0.0042, 0.2, 0.12), angle);
-    const std::vector<Vec> points = *face_layers(solid, coarse(), nothing_covered);
+    const std::vector<Vec2> points = *face_layers(solid, coarse(), nothing_covered);
     EXPECT_EQ(points.size(), 20U * 12U - 14U * 6U);
     EXPECT_NEAR(testing::smallest_distance(points), kDx, 1e-9);
-    for (const Vec& point : points) {
+    for (const Vec2& point : points) {
       const double layer = -signed_distance(solid, point) / kDx - 0.5;
       EXPECT_NEAR(layer, std::round(layer), 1e-9);
     }
@@ -59,11 +59,11 @@ TEST(FaceLayers, DoNotDependOnTheOrderOfTheCorners) {
 
 TEST(FaceLayers, LieBehindOpenFacesAlone) {
   // A bed of 5.5 spacings on the floor between the walls: three rows under its upper face.
-  const auto covered = [](const Vec& p) { return p.x() < 0 || p.x() > 0.6 || p.y() < 0; };
+  const auto covered = [](const Vec2& p) { return p.x() < 0 || p.x() > 0.6 || p.y() < 0; };
   const auto points = *face_layers(box(0, 0, 0.6, 0.055), coarse(), covered);
   ASSERT_EQ(points.size(), 180U);
   double left = 1.0;
-  for (const Vec& point : points) {
+  for (const Vec2& point : points) {
     const double layer = (0.055 - point.y()) / kDx - 0.5;
     EXPECT_NEAR(layer, std::round(layer), 1e-9);
     left = std::min(left, point.x());
@@ -76,8 +76,8 @@ TEST(FaceLayers, GoStraightIntoTheCornerOfAnL) {
   // The cells within three of the two faces that meet at (0, 0), from 20 spacings of each: 20 of
   // each layer on either side and the k-th corner's 2 k + 1.
   const Polygon solid{
-      {Vec(-0.1, -0.1), Vec(0.2, -0.1), Vec(0.2, 0), Vec(0, 0), Vec(0, 0.2), Vec(-0.1, 0.2)}};
-  const auto covered = [](const Vec& p) {
+      {Vec2(-0.1, -0.1), Vec2(0.2, -0.1), Vec2(0.2, 0), Vec2(0, 0), Vec2(0, 0.2), Vec2(-0.1, 0.2)}};
+  const auto covered = [](const Vec2& p) {
     return p.x() < -0.1 || p.y() < -0.1 || p.x() > 0.2 || p.y() > 0.2;
   };
   const auto points = *face_layers(solid, coarse(), covered);
@@ -108,11 +108,11 @@ TEST(FaceLayers, LieInsideAndApartAtAnyCorners) {
         const double radius = k % 2 == 0 ? 0.1 : notch;
         star.points.emplace_back(5 + radius * std::cos(angle), radius * std::sin(angle));
       }
-      const auto points = face_layers(star, coarse(), [](const Vec& p) { return p.y() < 0; });
+      const auto points = face_layers(star, coarse(), [](const Vec2& p) { return p.y() < 0; });
       EXPECT_TRUE(points || notch < 0.1) << tips;
       if (!points) continue;
       EXPECT_GT(testing::smallest_distance(*points), 0.74 * kDx) << tips;
-      for (const Vec& point : *points) EXPECT_LT(signed_distance(star, point), 0.0) << tips;
+      for (const Vec2& point : *points) EXPECT_LT(signed_distance(star, point), 0.0) << tips;
     }
   }
 }
@@ -120,9 +120,9 @@ TEST(FaceLayers, LieInsideAndApartAtAnyCorners) {
 TEST(FaceLayers, AreOnlyMadeWhereThoseOfTwoFacesStayApart) {
   EXPECT_TRUE(face_layers(turned(box(0, 0, 0.2, 0.05), 0.4), coarse(), nothing_covered));
   EXPECT_FALSE(face_layers(turned(box(0, 0, 0.2, 0.049), 0.4), coarse(), nothing_covered));
-  const Polygon wedge{{Vec(0, 0), Vec(0.4, 0), Vec(0.4, 0.1)}};
+  const Polygon wedge{{Vec2(0, 0), Vec2(0.4, 0), Vec2(0.4, 0.1)}};
   EXPECT_FALSE(face_layers(wedge, coarse(), nothing_covered));
-  const auto floor = [](const Vec& p) { return p.y() < 0 || p.x() > 0.4; };
+  const auto floor = [](const Vec2& p) { return p.y() < 0 || p.x() > 0.4; };
   EXPECT_TRUE(face_layers(wedge, coarse(), floor)) << "the floor goes on below it";
 }
 

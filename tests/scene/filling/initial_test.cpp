@@ -29,8 +29,8 @@ Scene example(const std::string& name) {
 
 json region(const char* text) { return json::parse(text); }
 
-std::vector<Vec> positions(const Particles& particles) {
-  std::vector<Vec> result;
+std::vector<Vec2> positions(const Particles& particles) {
+  std::vector<Vec2> result;
   for (std::size_t i = 0; i < particles.size(); ++i) result.push_back(particles.position_of(i));
   return result;
 }
@@ -70,7 +70,7 @@ TEST(InitialParticles, FillNothingButWhatTheSolverIsPromised) {
   EXPECT_EQ(state.step, 0U);
   EXPECT_EQ(state.time, 0.0);
   EXPECT_TRUE(state.removed.empty());
-  for (const Field& field : kFields) {
+  for (const Field& field : fields_in(2)) {
     const std::vector<double>& values = field.values.of(state.particles);
     const bool filled = field.name == "x" || field.name == "y" || field.name == "vx" ||
                         field.name == "vy" || field.name == "density_excess" || field.name == "id";
@@ -91,9 +91,9 @@ TEST(InitialParticles, StartWithTheirRegionsVelocity) {
   text["fluid"].push_back(
       region(R"({"shape": "circle", "center": [1.5, 0.5], "radius": 0.2, "velocity": [-1, 2]})"));
   const Particles p = create_particles(parsed(text)).state.particles;
-  EXPECT_EQ(p.velocity_of(0), Vec(0, 0));
-  EXPECT_EQ(p.velocity_of(199), Vec(0, 0));
-  EXPECT_EQ(p.velocity_of(200), Vec(-1, 2));
+  EXPECT_EQ(p.velocity_of(0), Vec2(0, 0));
+  EXPECT_EQ(p.velocity_of(199), Vec2(0, 0));
+  EXPECT_EQ(p.velocity_of(200), Vec2(-1, 2));
 }
 
 TEST(InitialParticles, AreStrainedAndTurnedAboutTheMiddleOfTheirRegion) {
@@ -112,7 +112,7 @@ TEST(InitialParticles, AreStrainedAndTurnedAboutTheMiddleOfTheirRegion) {
     EXPECT_NEAR(p.velocity[1][i], 2 - 3 * y + 4 * x, 1e-12);
     EXPECT_LE(p.velocity_of(i).norm(), greatest_speed(scene.fluid[1]));
   }
-  EXPECT_EQ(p.velocity_of(0), Vec(0, 0));
+  EXPECT_EQ(p.velocity_of(0), Vec2(0, 0));
 }
 
 TEST(InitialParticles, StartWithTheDensityOfWaterAtRest) {
@@ -177,8 +177,8 @@ TEST(InitialParticles, LieOnTheLatticeOfTheOriginInACircle) {
   const json drop = region(R"({"shape": "circle", "center": [0.013, 0.017], "radius": 0.5})");
   const Particles p = create_particles(parsed(free_scene(drop))).state.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_LE((p.position_of(i) - Vec(0.013, 0.017)).norm(), 0.5);
-    const Vec cells = p.position_of(i) / 0.05 - Vec(0.5, 0.5);
+    EXPECT_LE((p.position_of(i) - Vec2(0.013, 0.017)).norm(), 0.5);
+    const Vec2 cells = p.position_of(i) / 0.05 - Vec2(0.5, 0.5);
     EXPECT_NEAR(cells.x(), std::round(cells.x()), 1e-9);
     EXPECT_NEAR(cells.y(), std::round(cells.y()), 1e-9);
   }
@@ -221,7 +221,7 @@ TEST(InitialParticles, GiveWayToRoundObstacles) {
   const Particles p = create_particles(parsed(text)).state.particles;
   EXPECT_EQ(p.size(), 187U) << "200 - pi 2^2 = 187.4";
   for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_GT((p.position_of(i) - Vec(0.5, 0.25)).norm(), 0.1);
+    EXPECT_GT((p.position_of(i) - Vec2(0.5, 0.25)).norm(), 0.1);
   }
 }
 
@@ -252,7 +252,7 @@ TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
   double mean = 0.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < lattice.size(); ++i) {
-    const Vec moved = (first.position_of(i) - lattice.position_of(i)) / 0.05;
+    const Vec2 moved = (first.position_of(i) - lattice.position_of(i)) / 0.05;
     EXPECT_LE(moved.cwiseAbs().maxCoeff(), 0.1 + 1e-12);
     EXPECT_NE(first.position[0][i], second.position[0][i]);
     mean += moved.sum() / (2.0 * static_cast<double>(lattice.size()));

@@ -77,12 +77,12 @@ TYPED_TEST(PackingIn, MakesTheConcentrationUniform) {
 }
 
 TEST(Packing, DoesNotKnowWhereTheOriginIs) {
-  std::vector<Vec> here = lattice<2>(8, 0.3), there = here;
-  std::vector<FixedPoint> fixed = shell<2>(8);
+  std::vector<Vec2> here = lattice<2>(8, 0.3), there = here;
+  std::vector<FixedPointN<2>> fixed = shell<2>(8);
   (void)pack(here, fixed, kApart);
-  const Vec far(1000.0, -2000.0);
-  for (Vec& point : there) point += far;
-  for (FixedPoint& each : fixed) each.position += far;
+  const Vec2 far(1000.0, -2000.0);
+  for (Vec2& point : there) point += far;
+  for (FixedPointN<2>& each : fixed) each.position += far;
   (void)pack(there, fixed, kApart);
   for (std::size_t i = 0; i < here.size(); ++i) {
     EXPECT_LT((there[i] - far - here[i]).norm(), 1e-4 * kApart);
@@ -90,9 +90,9 @@ TEST(Packing, DoesNotKnowWhereTheOriginIs) {
 }
 
 TEST(Packing, EndsAtItsMostIterationsWhateverItIsGiven) {
-  std::vector<Vec> one_place(40, Vec(0.3, 0.2));
+  std::vector<Vec2> one_place(40, Vec2(0.3, 0.2));
   EXPECT_EQ(pack(one_place, {}, kApart).particles, 40U);
-  std::vector<Vec> none;
+  std::vector<Vec2> none;
   EXPECT_EQ(pack(none, shell<2>(3), kApart).iterations, 0);
 }
 

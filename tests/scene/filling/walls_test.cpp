@@ -37,7 +37,7 @@ TEST(TankWalls, AreCountedAsTheyAreMade) {
 
 TEST(TankWalls, LieOutsideAndNowhereTwice) {
   for (const bool open : {true, false}) {
-    const std::vector<Vec> walls = tank_walls({1.03, 0.47, open}, method(0.05));
+    const std::vector<Vec> walls = tank_walls({1.03, 0.47, {}, open}, method(0.05));
     // Stretched along a wall by half a cell in nine at the most.
     EXPECT_GT(testing::smallest_distance(walls), 0.05 * 9 / 10);
     for (const Vec& point : walls) {
@@ -53,7 +53,7 @@ TEST(TankWalls, LieOutsideAndNowhereTwice) {
 
 TEST(TankWalls, AreSpacedWholeAlongEachWall) {
   // 1.03 m / 0.05 m = 20.6 -> 21 columns, 0.47 / 0.05 = 9.4 -> 9 rows.
-  const std::vector<Vec> walls = tank_walls({1.03, 0.47, true}, method(0.05));
+  const std::vector<Vec> walls = tank_walls({1.03, 0.47, {}, true}, method(0.05));
   std::set<double> floor, side;
   for (const Vec& point : walls) {
     const bool above_floor = point.y() > 0;
@@ -69,18 +69,18 @@ TEST(TankWalls, AreSpacedWholeAlongEachWall) {
 }
 
 TEST(TankWalls, FillTheCornersAndLeaveTheTopOpen) {
-  const auto has = [](const std::vector<Vec>& walls, const Vec& point) {
+  const auto has = [](const std::vector<Vec>& walls, const Vec2& point) {
     return std::any_of(walls.begin(), walls.end(),
-                       [&](const Vec& each) { return (each - point).norm() < 1e-9; });
+                       [&](const Vec2& each) { return (each - point).norm() < 1e-9; });
   };
-  const std::vector<Vec> open = tank_walls({1, 0.5, true}, method(0.05));
-  const std::vector<Vec> closed = tank_walls({1, 0.5, false}, method(0.05));
-  EXPECT_TRUE(has(open, Vec(-0.125, -0.125)));
-  EXPECT_TRUE(has(open, Vec(1.125, -0.125)));
-  EXPECT_FALSE(has(open, Vec(0.525, 0.525)));
-  EXPECT_FALSE(has(open, Vec(-0.025, 0.525)));
-  EXPECT_TRUE(has(closed, Vec(0.525, 0.525)));
-  EXPECT_TRUE(has(closed, Vec(1.125, 0.625)));
+  const std::vector<Vec> open = tank_walls({1, 0.5, {}, true}, method(0.05));
+  const std::vector<Vec> closed = tank_walls({1, 0.5, {}, false}, method(0.05));
+  EXPECT_TRUE(has(open, Vec2(-0.125, -0.125)));
+  EXPECT_TRUE(has(open, Vec2(1.125, -0.125)));
+  EXPECT_FALSE(has(open, Vec2(0.525, 0.525)));
+  EXPECT_FALSE(has(open, Vec2(-0.025, 0.525)));
+  EXPECT_TRUE(has(closed, Vec2(0.525, 0.525)));
+  EXPECT_TRUE(has(closed, Vec2(1.125, 0.625)));
 }
 
 TEST(TankWalls, HoldTheKernelsSupport) {
@@ -94,7 +94,7 @@ TEST(TankWalls, HoldTheKernelsSupport) {
 
 TEST(ObstacleWalls, FillASmallRectangleToItsFaces) {
   // 0.27 m = 5.4 cells -> 5 of 0.054 m; 0.1 m = 2 cells.
-  const auto walls = obstacle_walls({Rectangle{Vec(1, 2), Vec(0.27, 0.1)}}, method(0.05));
+  const auto walls = obstacle_walls({Rectangle{Vec2(1, 2), Vec2(0.27, 0.1)}}, method(0.05));
   ASSERT_EQ(walls.size(), 10U);
   EXPECT_NEAR(walls.front().x(), 1.027, 1e-12);
   EXPECT_NEAR(walls.front().y(), 2.025, 1e-12);
@@ -104,13 +104,13 @@ TEST(ObstacleWalls, FillASmallRectangleToItsFaces) {
 
 TEST(ObstacleWalls, LeaveOutWhatIsDeeperThanThreeLayers) {
   // 20 x 30 cells less the 14 x 24 within.
-  const auto walls = obstacle_walls({Rectangle{Vec(0, 0), Vec(1, 1.5)}}, method(0.05));
+  const auto walls = obstacle_walls({Rectangle{Vec2(0, 0), Vec2(1, 1.5)}}, method(0.05));
   EXPECT_EQ(walls.size(), 20U * 30U - 14U * 24U);
 }
 
 TEST(ObstacleWalls, KeepEveryPointNearTheSurfaceOfAThinEllipse) {
-  const Vec axes(2, 0.3);
-  const auto walls = obstacle_walls({Ellipse{Vec(0, 0), axes}}, method(0.05));
+  const Vec2 axes(2, 0.3);
+  const auto walls = obstacle_walls({Ellipse{Vec2(0, 0), axes}}, method(0.05));
   // Thirteen rows at the most, so the middle one is out of reach of the surface in columns only.
   std::set<std::pair<long, long>> cells;
   for (const Vec& point : walls) {
@@ -124,8 +124,8 @@ TEST(ObstacleWalls, KeepEveryPointNearTheSurfaceOfAThinEllipse) {
 }
 
 TEST(ObstacleWalls, OfOverlappingObstaclesStandOnce) {
-  const std::vector<Shape> two = {Rectangle{Vec(0, 0), Vec(0.2, 0.2)},
-                                  Rectangle{Vec(0.1, 0.1), Vec(0.2, 0.2)}};
+  const std::vector<Shape> two = {Rectangle{Vec2(0, 0), Vec2(0.2, 0.2)},
+                                  Rectangle{Vec2(0.1, 0.1), Vec2(0.2, 0.2)}};
   const auto walls = obstacle_walls(two, method(0.05));
   EXPECT_EQ(walls.size(), 16U + 12U);
   EXPECT_GT(testing::smallest_distance(walls), 0.049);
@@ -133,14 +133,14 @@ TEST(ObstacleWalls, OfOverlappingObstaclesStandOnce) {
 
 TEST(Rim, IsTheMiddleOfTheWallsHoweverThickTheyAre) {
   nlohmann::json text = testing::base_scene();
-  EXPECT_DOUBLE_EQ(testing::parsed(text).domain.rim_left, -1.5 * 0.05);
+  EXPECT_DOUBLE_EQ(testing::parsed(text).domain.rim.min[0], -1.5 * 0.05);
   text["resolution"]["smoothing_ratio"] = 1.3;  // walls of four layers
   text["numerics"] = {{"scheme", "paper"}, {"courant", 0.1}};
   const Scene scene = testing::parsed(text);
   const std::int64_t layers = wall_layers(scene.method);
   ASSERT_EQ(layers % 2, 0);
-  EXPECT_DOUBLE_EQ(scene.domain.rim_left, -0.5 * 0.05 * static_cast<double>(layers));
-  EXPECT_DOUBLE_EQ(scene.domain.rim_right, 2.0 - scene.domain.rim_left);
+  EXPECT_DOUBLE_EQ(scene.domain.rim.min[0], -0.5 * 0.05 * static_cast<double>(layers));
+  EXPECT_DOUBLE_EQ(scene.domain.rim.max[0], 2.0 - scene.domain.rim.min[0]);
 }
 
 }  // namespace

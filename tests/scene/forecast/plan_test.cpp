@@ -127,8 +127,8 @@ TEST(Plan, NamesEachFieldOnceAsItsIntegratorCarriesIt) {
     json text = base_scene();
     text["numerics"] = {{"scheme", "recommended"}, {"integrator", word}};
     const Plan p = plan(parsed(text));
-    EXPECT_EQ(p.fields.size() + p.fields_left_out.size(), kFields.size());
-    for (const Field& field : kFields) {
+    EXPECT_EQ(p.fields.size() + p.fields_left_out.size(), fields_in(2).size());
+    for (const Field& field : fields_in(2)) {
       const auto& list = carries(integrator, field) ? p.fields : p.fields_left_out;
       EXPECT_THAT(names(list), Contains(std::string(field.name))) << word;
     }

@@ -15,7 +15,7 @@ using testing::parsed;
 
 constexpr double kExact = 0.005;
 
-double share(const nlohmann::json& scene, const Vec& point, double h, double time = 0.0) {
+double share(const nlohmann::json& scene, const Vec2& point, double h, double time = 0.0) {
   return OpenFraction(parsed(scene), point, h).at(time);
 }
 
@@ -35,7 +35,7 @@ double above_floor(KernelKind kernel, double depth) {
   double whole = 0.0;
   for (int n = 1; n < kSteps; ++n) {
     const double r = support * n / kSteps;
-    const double ring = r * kernel_value(kernel, r * r);
+    const double ring = r * kernel_value<2>(kernel, r * r);
     const double below = r > depth ? std::acos(depth / r) / pi : 0.0;
     open += ring * (1.0 - below);
     whole += ring;
@@ -96,7 +96,7 @@ TEST(OpenFraction, WithoutATankAllIsOpen) {
 TEST(OpenFraction, GrowsAsTheGateIsLifted) {
   nlohmann::json scene = base_scene();
   scene["gate"] = {{"x", 1.0}, {"height", 0.5}, {"speed", 2.0}};
-  const OpenFraction beside(parsed(scene), {1.0, 0.2}, 0.05);
+  const OpenFraction beside(parsed(scene), Vec2(1.0, 0.2), 0.05);
   // The body is as thick as the support: it fills the right half until its edge comes by.
   EXPECT_NEAR(beside.at(0.0), 0.5, kExact);
   EXPECT_NEAR(beside.at(0.1), 0.75, 2 * kExact);

@@ -106,10 +106,10 @@ TYPED_TEST(Shapes, ChordsAreWhereALineEntersAndLeaves) {
 }
 
 TEST(RectangleChords, AreThoseOfACuboid) {
-  const Rectangle rectangle{Vec(1.0, 2.0), Vec(3.0, 1.0)};
+  const Rectangle rectangle{Vec2(1.0, 2.0), Vec2(3.0, 1.0)};
   for (int k = 0; k < 100; ++k) {
-    const Vec direction(std::cos(0.1 * k), std::sin(0.1 * k));
-    const Vec origin(2.0 + std::sin(k), 2.5 + std::cos(k));
+    const Vec2 direction(std::cos(0.1 * k), std::sin(0.1 * k));
+    const Vec2 origin(2.0 + std::sin(k), 2.5 + std::cos(k));
     const std::vector<double> outline = chords(rectangle, origin, direction);
     const std::vector<double> slabs = chords<2>(rectangle, origin, direction);
     ASSERT_EQ(outline.size(), slabs.size()) << k;

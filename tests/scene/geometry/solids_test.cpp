@@ -4,22 +4,11 @@
 
 #include <cmath>
 
-#include "engine/scene/geometry/solids-inl.hpp"
-#include "engine/scene/geometry/ways-inl.hpp"
+#include "engine/scene/geometry/geometry.hpp"
+#include "engine/scene/geometry/ways.hpp"
 #include "tests/space/dimensions.hpp"
 
 namespace sluice {
-
-/// The axes do for solids whose faces stand across them.
-template <>
-std::vector<VecN<3>> directions<3>(int, double) {
-  std::vector<VecN<3>> result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.emplace_back(VecN<3>::Unit(axis));
-    result.emplace_back(-VecN<3>::Unit(axis));
-  }
-  return result;
-}
 
 namespace {
 

@@ -91,7 +91,7 @@ void expect_shape_of(const Evaluate& evaluate, double tolerance) {
 
 // Tolerances: what ExpEighth states, and for Wendland a few units in the last place of 1.
 TEST(KernelShapes, TheGaussianInSinglePrecisionIsTheScalarOneToNineTenMillionths) {
-  expect_shape_of<TruncatedGaussian, float>(
+  expect_shape_of<TruncatedGaussianN<2>, float>(
       [](auto... a) {
         HWY_DYNAMIC_DISPATCH(gaussian_float)
         (a...);
@@ -100,7 +100,7 @@ TEST(KernelShapes, TheGaussianInSinglePrecisionIsTheScalarOneToNineTenMillionths
 }
 
 TEST(KernelShapes, TheGaussianInDoublePrecisionIsTheScalarOneToRounding) {
-  expect_shape_of<TruncatedGaussian, double>(
+  expect_shape_of<TruncatedGaussianN<2>, double>(
       [](auto... a) {
         HWY_DYNAMIC_DISPATCH(gaussian_double)
         (a...);
@@ -109,7 +109,7 @@ TEST(KernelShapes, TheGaussianInDoublePrecisionIsTheScalarOneToRounding) {
 }
 
 TEST(KernelShapes, WendlandInSinglePrecisionIsTheScalarOneToRounding) {
-  expect_shape_of<WendlandC2, float>(
+  expect_shape_of<WendlandC2N<2>, float>(
       [](auto... a) {
         HWY_DYNAMIC_DISPATCH(wendland_float)
         (a...);
@@ -118,7 +118,7 @@ TEST(KernelShapes, WendlandInSinglePrecisionIsTheScalarOneToRounding) {
 }
 
 TEST(KernelShapes, WendlandInDoublePrecisionIsTheScalarOneToRounding) {
-  expect_shape_of<WendlandC2, double>(
+  expect_shape_of<WendlandC2N<2>, double>(
       [](auto... a) {
         HWY_DYNAMIC_DISPATCH(wendland_double)
         (a...);

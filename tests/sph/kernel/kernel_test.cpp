@@ -56,27 +56,28 @@ TEST(Kernels, TheSlopeIsTheDerivativeOfTheValue) {
 
 TEST(Kernels, TheSlopeIsFiniteAtTheCentre) {
   // Limits of -W'(R)/R for R -> 0.
-  EXPECT_NEAR(TruncatedGaussian::slope(0.0), 2.0 / std::numbers::pi, 1e-15);
-  EXPECT_NEAR(WendlandC2::slope(0.0), 35.0 / (4.0 * std::numbers::pi), 1e-14);
+  EXPECT_NEAR(TruncatedGaussianN<2>::slope(0.0), 2.0 / std::numbers::pi, 1e-15);
+  EXPECT_NEAR(WendlandC2N<2>::slope(0.0), 35.0 / (4.0 * std::numbers::pi), 1e-14);
 }
 
 TEST(Kernels, ValueAndSlopeAreZeroFromTheSupportOn) {
   for (const double r : {3.0, 3.0001, 4.0, 1e3, 1e150}) {
-    EXPECT_EQ(TruncatedGaussian::value(r * r), 0.0) << r;
-    EXPECT_EQ(TruncatedGaussian::slope(r * r), 0.0) << r;
+    EXPECT_EQ(TruncatedGaussianN<2>::value(r * r), 0.0) << r;
+    EXPECT_EQ(TruncatedGaussianN<2>::slope(r * r), 0.0) << r;
   }
   for (const double r : {2.0, 2.0001, 3.0, 1e3, 1e50}) {
-    EXPECT_EQ(WendlandC2::value(r * r), 0.0) << r;
-    EXPECT_EQ(WendlandC2::slope(r * r), 0.0) << r;
+    EXPECT_EQ(WendlandC2N<2>::value(r * r), 0.0) << r;
+    EXPECT_EQ(WendlandC2N<2>::slope(r * r), 0.0) << r;
   }
-  EXPECT_GT(TruncatedGaussian::value(2.999 * 2.999), 0.0);
-  EXPECT_GT(WendlandC2::value(1.99 * 1.99), 0.0);
+  EXPECT_GT(TruncatedGaussianN<2>::value(2.999 * 2.999), 0.0);
+  EXPECT_GT(WendlandC2N<2>::value(1.99 * 1.99), 0.0);
 }
 
 TEST(Kernels, TheMethodsKernelIsTheOneItNames) {
   for (const double r_sq : {0.0, 0.3, 2.0, 5.0, 10.0}) {
-    EXPECT_EQ(kernel_value(KernelKind::truncated_gaussian, r_sq), TruncatedGaussian::value(r_sq));
-    EXPECT_EQ(kernel_value(KernelKind::wendland_c2, r_sq), WendlandC2::value(r_sq));
+    EXPECT_EQ(kernel_value<2>(KernelKind::truncated_gaussian, r_sq),
+              TruncatedGaussianN<2>::value(r_sq));
+    EXPECT_EQ(kernel_value<2>(KernelKind::wendland_c2, r_sq), WendlandC2N<2>::value(r_sq));
   }
 }
 
@@ -84,9 +85,9 @@ TEST(Kernels, TheSupportOfADiscretisationIsWhereItsKernelEnds) {
   Discretisation m;
   m.smoothing_length = 0.5;
   m.kernel = KernelKind::truncated_gaussian;
-  EXPECT_DOUBLE_EQ(m.support(), TruncatedGaussian::support * 0.5);
+  EXPECT_DOUBLE_EQ(m.support(), TruncatedGaussianN<2>::support * 0.5);
   m.kernel = KernelKind::wendland_c2;
-  EXPECT_DOUBLE_EQ(m.support(), WendlandC2::support * 0.5);
+  EXPECT_DOUBLE_EQ(m.support(), WendlandC2N<2>::support * 0.5);
 }
 
 }  // namespace

@@ -44,12 +44,12 @@ TEST(SimdTargets, DifferOnlyInRounding) {
       TestMethod m = full_method();
       m.integrator = integrator;
       m.precision = precision;
-      Solver best = solver_for(m, start_from(block()), {}, {});
+      SolverN<2> best = solver_for(m, start_from(block()), {}, {});
       run_steps(best, 25);
       const Fluid expected = fluid_of(best.state());
       const double eps = precision == Precision::mixed ? 1e-4 : 1e-11;
       for (const std::string& name : simd_targets()) {
-        Solver solver = solver_for(m, start_from(block()), {}, {1, name});
+        SolverN<2> solver = solver_for(m, start_from(block()), {}, {1, name});
         run_steps(solver, 25);
         const Fluid fluid = fluid_of(solver.state());
         expect_near(fluid.x, expected.x, eps * 0.1, name + ": position");
@@ -63,7 +63,7 @@ TEST(SimdTargets, DifferOnlyInRounding) {
 TEST(SimdTargets, AnUnknownNameIsRefusedWithTheListOfKnownOnes) {
   for (const std::string bad : {"AVX9", "avx2", "SCALAR-ish", " "}) {
     try {
-      const Solver solver = solver_for(full_method(), start_from(block()), {}, {1, bad});
+      const SolverN<2> solver = solver_for(full_method(), start_from(block()), {}, {1, bad});
       FAIL() << "accepted \"" << bad << '"';
     } catch (const std::invalid_argument& error) {
       const std::string text = error.what();
@@ -81,7 +81,7 @@ TEST(SimdTargets, ThreadsMayChooseAtTheSameTime) {
   std::vector<std::thread> threads;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     threads.emplace_back([&, k] {
-      const Solver solver =
+      const SolverN<2> solver =
           solver_for(full_method(), start_from(block()), {}, {1, names[k % names.size()]});
       seen[k] = solver.simd_target();
     });

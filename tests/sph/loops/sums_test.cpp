@@ -41,12 +41,12 @@ std::vector<TestMethod> all_combinations_of_terms(KernelKind kernel) {
 
 struct Scene {
   Fluid fluid;
-  std::vector<Vec> walls;
+  std::vector<Vec2> walls;
 };
 
 Scene perturbed_tank(std::uint64_t seed) {
   Dice dice(seed);
-  const Vec corner(-0.73, -0.51);
+  const Vec2 corner(-0.73, -0.51);
   return {random_block(dice, corner, 13, 9, 0.1, 0.3, 2.0, 20.0), walls_around(corner, 13, 9, 0.1)};
 }
 
@@ -75,10 +75,10 @@ void expect_leap_frog_sums(const TestMethod& m, const Scene& scene, const std::s
                            const std::vector<double>& pressure, const PlainRates& expected) {
   const std::string what = describe(m, target);
   const double eps = tolerance(m.precision);
-  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
+  SolverN<2> solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
   solver.step();
   const Fluid after = fluid_of(solver.state());
-  std::vector<Vec> a;
+  std::vector<Vec2> a;
   for (std::size_t i = 0; i < after.size(); ++i) {
     a.emplace_back((after.v[i] - scene.fluid.v[i]) / solver.time_step());
   }
@@ -94,12 +94,12 @@ void expect_kick_drift_kick_sums(const TestMethod& m, const Scene& scene, const 
                                  const std::vector<double>& pressure, const PlainRates& expected) {
   const std::string what = describe(m, target);
   const double eps = tolerance(m.precision);
-  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
+  SolverN<2> solver = solver_for(m, start_from(scene.fluid), scene.walls, {1, target});
   expect_near(solver.wall_pressures(), pressure, eps * 2e4, what + ": wall pressure");
-  const SolverState start = solver.state();
-  const auto ax = by_id(start, {&Particles::acceleration, 0});
-  const auto ay = by_id(start, {&Particles::acceleration, 1});
-  std::vector<Vec> a;
+  const SolverStateN<2> start = solver.state();
+  const auto ax = by_id(start, {&ParticlesN<2>::acceleration, 0});
+  const auto ay = by_id(start, {&ParticlesN<2>::acceleration, 1});
+  std::vector<Vec2> a;
   for (std::size_t i = 0; i < ax.size(); ++i) a.emplace_back(ax[i], ay[i]);
   expect_near(a, expected.acceleration, eps * expected.acceleration_size, what + ": acceleration");
 
@@ -165,19 +165,19 @@ TEST(PairSums, LeaveOutWhatALiftedWallHasPassed) {
   // The right wall, x > 0.57 m: after 0.14 s its edge is between the fourth and the fifth row.
   TestMethod m = full_method();
   m.reinitialisation.reset();
-  m.domain.gate = GateMotion{{{0.57, -0.51}, {0.9, 0.4}}, 3.0};
-  SolverState state = start_from(scene.fluid);
+  m.domain.gate = GateMotionN<2>{{{0.57, -0.51}, {0.9, 0.4}}, 3.0};
+  SolverStateN<2> state = start_from(scene.fluid);
   state.time = 0.14;
-  std::vector<Vec> standing;
-  for (const Vec& wall : scene.walls) {
+  std::vector<Vec2> standing;
+  for (const Vec2& wall : scene.walls) {
     if (wall.x() < 0.57 || wall.y() < -0.51 || wall.y() > -0.09) standing.push_back(wall);
   }
   ASSERT_LT(standing.size(), scene.walls.size());
   for (m.integrator = Integrator::modified_leap_frog;; m.integrator = Integrator::kick_drift_kick) {
-    Solver lifted = solver_for(m, state, scene.walls, {});
+    SolverN<2> lifted = solver_for(m, state, scene.walls, {});
     TestMethod still = m;
     still.domain.gate.reset();
-    Solver fewer = solver_for(still, state, standing, {});
+    SolverN<2> fewer = solver_for(still, state, standing, {});
     lifted.step();
     fewer.step();
     const Fluid a = fluid_of(lifted.state());
@@ -193,11 +193,11 @@ TEST(PairSums, AWallParticleWithoutFluidNearHasNoPressure) {
   Fluid fluid;
   fluid.add({0.0, 0.0}, {0.0, 0.0}, 5.0);
   const double edge = m.support();
-  const std::vector<Vec> walls{{1.001 * edge, 0.0}, {0.999 * edge, 0.0}, {-1.5, -1.5}};
+  const std::vector<Vec2> walls{{1.001 * edge, 0.0}, {0.999 * edge, 0.0}, {-1.5, -1.5}};
   for (const Precision precision : kPrecisions) {
     m.precision = precision;
     m.integrator = Integrator::kick_drift_kick;
-    const Solver solver = solver_for(m, start_from(fluid), walls, {});
+    const SolverN<2> solver = solver_for(m, start_from(fluid), walls, {});
     const auto pressure = solver.wall_pressures();
     EXPECT_EQ(pressure[0], 0.0);
     EXPECT_GT(pressure[1], 0.0);
@@ -208,13 +208,13 @@ TEST(PairSums, AWallParticleWithoutFluidNearHasNoPressure) {
 /// The leap-frog reinitialises at the start of a step, both time levels by the same increment.
 void expect_leap_frog_reinitialisation(const TestMethod& m, const Scene& scene) {
   const double eps = tolerance(m.precision);
-  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {});
+  SolverN<2> solver = solver_for(m, start_from(scene.fluid), scene.walls, {});
   solver.step();
-  const SolverState first = solver.state();
+  const SolverStateN<2> first = solver.state();
   Fluid fluid = fluid_of(first);
   const auto old_pressure = plain_wall_pressures(m, fluid, scene.walls);
   const auto fresh = plain_reinitialisation(m, fluid, scene.walls, old_pressure);
-  auto half = by_id(first, &Particles::density_excess_half);
+  auto half = by_id(first, &ParticlesN<2>::density_excess_half);
   for (std::size_t i = 0; i < half.size(); ++i) half[i] += fresh[i] - fluid.excess[i];
   fluid.excess = fresh;
   const auto rates =
@@ -228,9 +228,9 @@ void expect_leap_frog_reinitialisation(const TestMethod& m, const Scene& scene) 
   }
   // Excesses are below 100 kg/m^3 and the rates act for one step.
   const double size = 100.0 + dt_mean * rates.density_size;
-  const SolverState second = solver.state();
-  expect_near(by_id(second, &Particles::density_excess_half), half, eps * size, "half level");
-  expect_near(by_id(second, &Particles::density_excess), full, eps * size, "full level");
+  const SolverStateN<2> second = solver.state();
+  expect_near(by_id(second, &ParticlesN<2>::density_excess_half), half, eps * size, "half level");
+  expect_near(by_id(second, &ParticlesN<2>::density_excess), full, eps * size, "full level");
 }
 
 /// Kick-drift-kick reinitialises at the end of a step, before the acceleration.
@@ -238,8 +238,8 @@ void expect_kick_drift_kick_reinitialisation(const TestMethod& m, const Scene& s
   const double eps = tolerance(m.precision);
   TestMethod without = m;
   without.reinitialisation.reset();
-  Solver plain = solver_for(without, start_from(scene.fluid), scene.walls, {});
-  Solver solver = solver_for(m, start_from(scene.fluid), scene.walls, {});
+  SolverN<2> plain = solver_for(without, start_from(scene.fluid), scene.walls, {});
+  SolverN<2> solver = solver_for(m, start_from(scene.fluid), scene.walls, {});
   plain.step();
   solver.step();
   Fluid fluid = fluid_of(plain.state());
@@ -251,14 +251,14 @@ void expect_kick_drift_kick_reinitialisation(const TestMethod& m, const Scene& s
   const auto walls_after = plain_wall_pressures(m, fluid, scene.walls);
   expect_near(solver.wall_pressures(), walls_after, eps * 4e4, "wall pressure");
   // The acceleration saw the velocities before the last half kick.
-  const auto ax = by_id(solver.state(), {&Particles::acceleration, 0});
-  const auto ay = by_id(solver.state(), {&Particles::acceleration, 1});
+  const auto ax = by_id(solver.state(), {&ParticlesN<2>::acceleration, 0});
+  const auto ay = by_id(solver.state(), {&ParticlesN<2>::acceleration, 1});
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    fluid.v[i] = after.v[i] - 0.5 * solver.time_step() * Vec(ax[i], ay[i]);
+    fluid.v[i] = after.v[i] - 0.5 * solver.time_step() * Vec2(ax[i], ay[i]);
   }
   const auto rates = plain_rates(m, fluid, scene.walls, walls_after);
   std::vector<double> expected;
-  for (const Vec& a : rates.acceleration) expected.push_back(a.x());
+  for (const Vec2& a : rates.acceleration) expected.push_back(a.x());
   expect_near(ax, expected, eps * rates.acceleration_size, "acceleration");
 }
 

@@ -22,23 +22,23 @@ Fluid moving_block() {
   Fluid fluid = random_block(dice, {-0.6, -0.6}, 12, 12, 0.1, 0.2, 1.0, 20.0);
   // A spin, so that there is angular momentum to lose.
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    fluid.v[i] += 1.5 * Vec(-fluid.x[i].y(), fluid.x[i].x());
+    fluid.v[i] += 1.5 * Vec2(-fluid.x[i].y(), fluid.x[i].x());
   }
   return fluid;
 }
 
 struct Momentum {
-  Vec linear = Vec::Zero();
+  Vec2 linear = Vec2::Zero();
   double angular = 0.0;
 };
 
 /// Per unit of mass. The leap-frog conserves x^n x v^(n-1/2): its drift is along that velocity.
-Momentum momentum_of(const SolverState& state) {
-  const Particles& p = state.particles;
+Momentum momentum_of(const SolverStateN<2>& state) {
+  const ParticlesN<2>& p = state.particles;
   const bool half = !p.velocity_half[0].empty();
   Momentum sum;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec v = half ? Vec(p.velocity_half[0][i], p.velocity_half[1][i]) : p.velocity_of(i);
+    const Vec2 v = half ? Vec2(p.velocity_half[0][i], p.velocity_half[1][i]) : p.velocity_of(i);
     sum.linear += v;
     sum.angular += p.position[0][i] * v.y() - p.position[1][i] * v.x();
   }
@@ -47,7 +47,7 @@ Momentum momentum_of(const SolverState& state) {
 
 /// Rounding: 144 particles of some 3 m/s and 100 steps whose kicks reach 1 m/s.
 void expect_momentum_kept(const TestMethod& m, double tolerance) {
-  Solver solver = solver_for(m, start_from(moving_block()), {}, {});
+  SolverN<2> solver = solver_for(m, start_from(moving_block()), {}, {});
   solver.step();
   const Momentum before = momentum_of(solver.state());
   run_steps(solver, kSteps);
@@ -81,7 +81,7 @@ TEST(Conservation, ViscosityTakesEnergyOutAndNeverPutsAnyIn) {
     m.diffusion.reset();
     m.reinitialisation.reset();
     m.viscosity->alpha = 0.2;
-    Solver solver = solver_for(m, start_from(moving_block()), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(moving_block()), {}, {});
     const double start = solver.energy().total();
     double last = start;
     for (int n = 0; n < kSteps; ++n) {
@@ -105,7 +105,7 @@ TEST(Conservation, EnergyOfAnInviscidDropIsKeptByKickDriftKick) {
   Dice dice(3);
   Fluid fluid = random_block(dice, {-1.0, -1.0}, 20, 20, 0.1, 0.0, 0.0, 0.0);
   for (std::size_t i = 0; i < fluid.size(); ++i) fluid.v[i] = {-fluid.x[i].x(), fluid.x[i].y()};
-  Solver solver = solver_for(m, start_from(fluid), {}, {});
+  SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
   const double start = solver.energy().total();
   run_steps(solver, kSteps);
   EXPECT_NEAR(solver.energy().total(), start, 0.01 * start);

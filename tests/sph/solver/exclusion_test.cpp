@@ -30,8 +30,8 @@ Fluid block() {
 }
 
 /// The state without one particle.
-SolverState without(SolverState state, std::size_t index) {
-  for (const Field& field : kFields) {
+SolverStateN<2> without(SolverStateN<2> state, std::size_t index) {
+  for (const FieldN<2>& field : FieldList<2>::fields) {
     std::vector<double>& values = field.values.of(state.particles);
     if (!values.empty()) values.erase(values.begin() + static_cast<std::ptrdiff_t>(index));
   }
@@ -39,38 +39,38 @@ SolverState without(SolverState state, std::size_t index) {
 }
 
 struct Fault {
-  FieldMember<Particles, Values> field;
+  FieldMember<ParticlesN<2>, Values, ParticlesN<2>::Axes> field;
   double value;
   RemovalCause cause;
 };
 const Fault kFaults[] = {
-    {&Particles::density_excess, 301.0, RemovalCause::too_dense},
-    {&Particles::density_excess, -301.0, RemovalCause::too_thin},
-    {{&Particles::velocity, 0}, 20.1, RemovalCause::too_fast},
-    {{&Particles::velocity, 1}, -1e200, RemovalCause::too_fast},
-    {{&Particles::position, 0}, kNan, RemovalCause::not_finite},
-    {{&Particles::position, 1}, -kInfinity, RemovalCause::not_finite},
-    {{&Particles::velocity, 0}, kNan, RemovalCause::not_finite},
-    {&Particles::density_excess, kInfinity, RemovalCause::not_finite},
+    {&ParticlesN<2>::density_excess, 301.0, RemovalCause::too_dense},
+    {&ParticlesN<2>::density_excess, -301.0, RemovalCause::too_thin},
+    {{&ParticlesN<2>::velocity, 0}, 20.1, RemovalCause::too_fast},
+    {{&ParticlesN<2>::velocity, 1}, -1e200, RemovalCause::too_fast},
+    {{&ParticlesN<2>::position, 0}, kNan, RemovalCause::not_finite},
+    {{&ParticlesN<2>::position, 1}, -kInfinity, RemovalCause::not_finite},
+    {{&ParticlesN<2>::velocity, 0}, kNan, RemovalCause::not_finite},
+    {&ParticlesN<2>::density_excess, kInfinity, RemovalCause::not_finite},
 };
 
 TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
       const TestMethod m = method_of(integrator, precision);
-      const SolverState good = start_from(block());
-      Solver expected = solver_for(m, without(good, kBad), {}, {});
+      const SolverStateN<2> good = start_from(block());
+      SolverN<2> expected = solver_for(m, without(good, kBad), {}, {});
       run_steps(expected, 40);
       for (const Fault& fault : kFaults) {
-        SolverState bad = good;
+        SolverStateN<2> bad = good;
         fault.field.of(bad.particles)[kBad] = fault.value;
-        Solver solver = solver_for(m, bad, {}, {});
+        SolverN<2> solver = solver_for(m, bad, {}, {});
         ASSERT_EQ(solver.removed().size(), 1U);
         EXPECT_EQ(solver.removed()[0].id, static_cast<double>(kBad));
         EXPECT_EQ(solver.removed()[0].cause, fault.cause) << fault.value;
         EXPECT_EQ(solver.particle_count(), 99U);
         run_steps(solver, 40);
-        SolverState seen = solver.state();
+        SolverStateN<2> seen = solver.state();
         EXPECT_EQ(seen.removed.size(), 1U);
         seen.removed.clear();
         expect_same_bits(seen, expected.state(), std::string(to_string(fault.cause)));
@@ -81,11 +81,11 @@ TEST(Exclusion, OfOneParticleAtTheStartLeavesTheOthersAsIfItHadNeverBeen) {
 
 /// A state under way in which one particle has just gone wrong: what its half steps make of it is
 /// wrong at the end of the next step.
-SolverState gone_wrong(const TestMethod& m, std::size_t steps) {
-  Solver solver = solver_for(m, start_from(block()), {}, {});
+SolverStateN<2> gone_wrong(const TestMethod& m, std::size_t steps) {
+  SolverN<2> solver = solver_for(m, start_from(block()), {}, {});
   while (solver.step_count() < steps) solver.step();
-  SolverState state = solver.state();
-  Particles& p = state.particles;
+  SolverStateN<2> state = solver.state();
+  ParticlesN<2>& p = state.particles;
   for (Values* values : {&p.density_excess, &p.density_excess_half}) {
     if (!values->empty()) (*values)[kBad] = 299.0;
   }
@@ -99,9 +99,9 @@ TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
   for (const Integrator integrator : kIntegrators) {
     for (const Precision precision : kPrecisions) {
       const TestMethod m = method_of(integrator, precision);
-      const SolverState start = gone_wrong(m, 7);
+      const SolverStateN<2> start = gone_wrong(m, 7);
       for (const std::string& target : simd_targets()) {
-        Solver whole = solver_for(m, start, {}, {1, target});
+        SolverN<2> whole = solver_for(m, start, {}, {1, target});
         run_steps(whole, 60);
         ASSERT_GT(whole.removed().size(), 0U) << "nobody excluded: this test proves nothing";
         EXPECT_LT(whole.removed().size(), 20U);
@@ -110,9 +110,9 @@ TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
         EXPECT_GT(at, 7U) << "excluded when it was loaded";
         for (const std::uint64_t stop : {at - 1, at, at + 1}) {
           for (const int threads : {2, 3, 8}) {
-            Solver first = solver_for(m, start, {}, {threads, target});
+            SolverN<2> first = solver_for(m, start, {}, {threads, target});
             while (first.step_count() < stop) first.step();
-            Solver second = solver_for(m, first.state(), {}, {1, target});
+            SolverN<2> second = solver_for(m, first.state(), {}, {1, target});
             EXPECT_EQ(second.extremes().max_speed, first.extremes().max_speed);
             EXPECT_EQ(second.extremes().max_density_excess, first.extremes().max_density_excess);
             EXPECT_EQ(second.extremes().max_x, first.extremes().max_x);
@@ -128,7 +128,7 @@ TEST(Exclusion, UnderWayIsTheSameForAnyThreadsStopAndTarget) {
 TEST(Exclusion, TakesTheExtremesOfTheOthers) {
   for (const Integrator integrator : kIntegrators) {
     const TestMethod m = method_of(integrator, Precision::double_precision);
-    Solver solver = solver_for(m, gone_wrong(m, 7), {}, {});
+    SolverN<2> solver = solver_for(m, gone_wrong(m, 7), {}, {});
     const auto bound = [&] {
       return solver.extremes().max_speed <= m.sound_speed &&
              std::abs(solver.extremes().max_density_excess) <= m.most_density_excess();
@@ -137,7 +137,7 @@ TEST(Exclusion, TakesTheExtremesOfTheOthers) {
       solver.step();
       EXPECT_TRUE(bound()) << "step " << solver.step_count();
       EXPECT_GE(solver.time_step(), m.least_time_step());
-      const SolverState state = solver.state();
+      const SolverStateN<2> state = solver.state();
       double fastest = 0.0;
       for (std::size_t i = 0; i < state.particles.size(); ++i) {
         fastest = std::max(fastest, state.particles.velocity_of(i).norm());
@@ -156,7 +156,7 @@ TEST(Exclusion, DoesNotShortenTheStepForAParticleThatIsThrownAbout) {
     m.gravity = {0.0, -6.25e4 * m.sound_speed * m.sound_speed / m.smoothing_length};
     Fluid fluid;
     fluid.add({0.0, 0.0});
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     run_steps(solver, 2);
     EXPECT_DOUBLE_EQ(m.least_time_step(), 0.05 * m.smoothing_length / m.sound_speed);
     EXPECT_EQ(solver.particle_count(), 0U);
@@ -168,16 +168,16 @@ TEST(Exclusion, DoesNotShortenTheStepForAParticleThatIsThrownAbout) {
 TEST(Exclusion, BooksMassMomentumAndEnergy) {
   TestMethod m = plain_method();
   m.gravity = {2.0, -3.0};
-  SolverState state = start_from(block());
-  Particles& p = state.particles;
+  SolverStateN<2> state = start_from(block());
+  ParticlesN<2>& p = state.particles;
   p.density_excess[kBad] = 400.0;
   p.velocity[0][kBad] = 3.0;
   p.velocity[1][kBad] = -4.0;
-  const Vec place = p.position_of(kBad);
-  const Solver solver = solver_for(m, state, {}, {});
+  const Vec2 place = p.position_of(kBad);
+  const SolverN<2> solver = solver_for(m, state, {}, {});
   ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
-  departed.add(m, solver.removed()[0]);
+  departed.add(method_as<kAnyDim>(m), removed_as<kAnyDim>(solver.removed()[0]));
   const double mass = 1000.0 * 0.1 * 0.1;
   EXPECT_EQ(departed.count, 1U);
   EXPECT_DOUBLE_EQ(departed.mass, mass);
@@ -190,14 +190,14 @@ TEST(Exclusion, BooksMassMomentumAndEnergy) {
 }
 
 TEST(Exclusion, KeepsNoNumberThatIsNone) {
-  SolverState state = start_from(block());
+  SolverStateN<2> state = start_from(block());
   state.particles.position[0][kBad] = kNan;
   state.particles.velocity[0][kBad] = kInfinity;
   state.particles.density_excess[kBad] = kNan;
-  const Solver solver = solver_for(plain_method(), state, {}, {});
+  const SolverN<2> solver = solver_for(plain_method(), state, {}, {});
   ASSERT_EQ(solver.removed().size(), 1U);
   Departed departed;
-  departed.add(plain_method(), solver.removed()[0]);
+  departed.add(method_as<kAnyDim>(plain_method()), removed_as<kAnyDim>(solver.removed()[0]));
   EXPECT_TRUE(std::isfinite(departed.energy.total()));
   EXPECT_TRUE(departed.momentum.allFinite());
 }
@@ -206,11 +206,11 @@ TEST(Solids, TakeWhoIsDeepInThemForALeakWithinFourCrossings) {
   for (const Integrator integrator : kIntegrators) {
     TestMethod m = plain_method();
     m.integrator = integrator;
-    m.domain.in_solid = [](const Vec& place, double) { return place.x() > 0.5; };
+    m.domain.in_solid = [](const Vec2& place, double) { return place.x() > 0.5; };
     Fluid fluid;
     fluid.add({0.0, 0.0}, {10.0, 0.0});
     fluid.add({-1.0, 0.0}, {-1.0, 0.0});
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     while (solver.removed().empty() && solver.step_count() < 200) solver.step();
     ASSERT_EQ(solver.removed().size(), 1U);
     EXPECT_EQ(solver.removed()[0].id, 0.0);
@@ -225,8 +225,8 @@ TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
   m.domain.room = {{-1.0, -1.0}, {1.0, kInfinity}};
   m.domain.wall_top = 0.5;
   m.domain.walls_reach = 0.4;
-  m.domain.rim_left = -1.2;
-  m.domain.rim_right = 1.2;
+  m.domain.rim.min[0] = -1.2;
+  m.domain.rim.max[0] = 1.2;
   EXPECT_TRUE(m.domain.keeps({0.0, 0.0}));
   EXPECT_FALSE(m.domain.keeps({1.1, 0.0}));
   EXPECT_FALSE(m.domain.keeps({0.0, -1.1}));
@@ -237,13 +237,13 @@ TEST(Solids, TheWallsOfATankAreOutsideOfItsRoom) {
   for (const Integrator integrator : kIntegrators) {
     m.integrator = integrator;
     Fluid fluid;
-    for (const Vec& place :
-         {Vec(0.0, 0.0), Vec(1.1, 0.0), Vec(0.0, -1.1), Vec(1.1, 0.6), Vec(1.3, 0.45)}) {
+    for (const Vec2& place :
+         {Vec2(0.0, 0.0), Vec2(1.1, 0.0), Vec2(0.0, -1.1), Vec2(1.1, 0.6), Vec2(1.3, 0.45)}) {
       fluid.add(place);
     }
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     ASSERT_EQ(solver.removed().size(), 3U);
-    for (const RemovedParticle& each : solver.removed()) {
+    for (const RemovedParticleN<2>& each : solver.removed()) {
       EXPECT_EQ(each.cause, each.id == 4.0 ? RemovalCause::overtopped : RemovalCause::leaked);
     }
   }

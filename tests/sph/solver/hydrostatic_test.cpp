@@ -15,7 +15,7 @@ constexpr double kG = 9.81;
 constexpr int kColumns = 16;
 constexpr int kRows = 15;
 constexpr double kDepth = kRows * kDx;
-const Vec kCorner(-0.8, -0.7);
+const Vec2 kCorner(-0.8, -0.7);
 
 TestMethod still_water(Integrator integrator, Precision precision) {
   TestMethod m = plain_method();
@@ -48,8 +48,8 @@ Fluid column_at_rest(const TestMethod& m) {
 /// Largest error of the pressure along a plumb line in the middle, in units of that at the floor,
 /// after a fall time.
 double worst_pressure_error(const TestMethod& m) {
-  const std::vector<Vec> walls = walls_around(kCorner, kColumns, kRows + 5, kDx);
-  Solver solver = solver_for(m, start_from(column_at_rest(m)), walls, {});
+  const std::vector<Vec2> walls = walls_around(kCorner, kColumns, kRows + 5, kDx);
+  SolverN<2> solver = solver_for(m, start_from(column_at_rest(m)), walls, {});
   while (solver.time() < std::sqrt(kDepth / kG)) solver.step();
   EXPECT_EQ(solver.particle_count(), static_cast<std::size_t>(kColumns * kRows));
   // Still: far below sqrt(g H).
@@ -77,8 +77,8 @@ TEST(StillWater, KeepsItsPressureForAShortTimeWithThePapersScheme) {
 
 TEST(StillWater, PressesOnTheFloorWithItsWeightFromTheFirstStepOn) {
   const TestMethod m = still_water(Integrator::kick_drift_kick, Precision::double_precision);
-  const std::vector<Vec> walls = walls_around(kCorner, kColumns, kRows + 5, kDx);
-  const Solver solver = solver_for(m, start_from(column_at_rest(m)), walls, {});
+  const std::vector<Vec2> walls = walls_around(kCorner, kColumns, kRows + 5, kDx);
+  const SolverN<2> solver = solver_for(m, start_from(column_at_rest(m)), walls, {});
   const std::vector<double> pressure = solver.wall_pressures();
   int checked = 0;
   for (std::size_t w = 0; w < walls.size(); ++w) {

@@ -32,7 +32,7 @@ TEST(FreeFall, OfAnIsolatedParticleIsExactWithStepsOfAnyLength) {
     for (const Precision precision : kPrecisions) {
       TestMethod m = falling(integrator);
       m.precision = precision;
-      Solver solver = solver_for(m, start_from(lone_particle()), {}, {});
+      SolverN<2> solver = solver_for(m, start_from(lone_particle()), {}, {});
       double shortest = 1.0;
       double longest = 0.0;
       for (int n = 0; n < 1500; ++n) {
@@ -55,7 +55,7 @@ TEST(FreeFall, OfAnIsolatedParticleIsExactWithStepsOfAnyLength) {
 }
 
 TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSteps) {
-  Solver solver =
+  SolverN<2> solver =
       solver_for(falling(Integrator::modified_leap_frog), start_from(lone_particle()), {}, {});
   double y = 1.0;
   double v_half = 5.0;
@@ -67,7 +67,7 @@ TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSt
     y += dt * v_half;
     const double v = v_half + 0.5 * dt * -kGravity;
     last = dt;
-    const SolverState state = solver.state();
+    const SolverStateN<2> state = solver.state();
     ASSERT_NEAR(state.particles.velocity_half[1][0], v_half, 1e-13) << "step " << n;
     ASSERT_NEAR(state.particles.position[1][0], y, 1e-13) << "step " << n;
     ASSERT_NEAR(state.particles.velocity[1][0], v, 1e-13) << "step " << n;
@@ -75,7 +75,7 @@ TEST(ModifiedLeapFrog, FollowsEquations13To17WithAHalfFirstKickAndTheMeanOfTwoSt
 }
 
 TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
-  Solver solver =
+  SolverN<2> solver =
       solver_for(falling(Integrator::kick_drift_kick), start_from(lone_particle()), {}, {});
   EXPECT_EQ(solver.state().particles.acceleration[1][0], -kGravity)
       << "the first kick needs the acceleration";
@@ -87,7 +87,7 @@ TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
     v -= 0.5 * dt * kGravity;
     y += dt * v;
     v -= 0.5 * dt * kGravity;
-    const SolverState state = solver.state();
+    const SolverStateN<2> state = solver.state();
     ASSERT_NEAR(state.particles.position[1][0], y, 1e-13) << "step " << n;
     ASSERT_NEAR(state.particles.velocity[1][0], v, 1e-13) << "step " << n;
   }
@@ -95,9 +95,9 @@ TEST(KickDriftKick, IsHalfKickDriftHalfKick) {
 
 TEST(Integrators, KeepOnlyTheFieldsTheyNeed) {
   for (const Integrator integrator : kIntegrators) {
-    const Solver solver = solver_for(falling(integrator), start_from(lone_particle()), {}, {});
-    const SolverState state = solver.state();
-    for (const Field& field : kFields) {
+    const SolverN<2> solver = solver_for(falling(integrator), start_from(lone_particle()), {}, {});
+    const SolverStateN<2> state = solver.state();
+    for (const FieldN<2>& field : FieldList<2>::fields) {
       const std::size_t expected = carries(integrator, field) ? 1U : 0U;
       EXPECT_EQ((field.values.of(state.particles)).size(), expected) << field.name;
     }
@@ -106,7 +106,7 @@ TEST(Integrators, KeepOnlyTheFieldsTheyNeed) {
 
 TEST(Integrators, TimeIsTheSumOfTheSteps) {
   for (const Integrator integrator : kIntegrators) {
-    Solver solver = solver_for(falling(integrator), start_from(lone_particle()), {}, {});
+    SolverN<2> solver = solver_for(falling(integrator), start_from(lone_particle()), {}, {});
     double sum = 0.0;
     for (std::uint64_t n = 1; n <= 30; ++n) {
       solver.step();
@@ -127,7 +127,7 @@ double distance_after(Integrator integrator, int k) {
   fluid.add({0.1, 0.0}, {-0.2, 0.0}, 0.0);
   // The fastest particle is a lone one, so that all steps are equally long.
   fluid.add({-1.5, -1.5}, {1.0, 0.0}, 0.0);
-  Solver solver = solver_for(m, start_from(fluid), {}, {});
+  SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
   run_steps(solver, 64 / k);
   const Fluid now = fluid_of(solver.state());
   return now.x[1].x() - now.x[0].x();

@@ -14,7 +14,7 @@ namespace {
 struct Scene {
   TestMethod method;
   Fluid fluid;
-  std::vector<Vec> walls;
+  std::vector<Vec2> walls;
 };
 
 Scene tank(Integrator integrator, Precision precision) {
@@ -30,23 +30,23 @@ Scene tank(Integrator integrator, Precision precision) {
 }
 
 Fluid after(const Scene& scene, int steps) {
-  Solver solver = solver_for(scene.method, start_from(scene.fluid), scene.walls, {});
+  SolverN<2> solver = solver_for(scene.method, start_from(scene.fluid), scene.walls, {});
   run_steps(solver, steps);
   return fluid_of(solver.state());
 }
 
-Scene moved(Scene scene, const Vec& by) {
-  for (Vec& x : scene.fluid.x) x += by;
-  for (Vec& x : scene.walls) x += by;
+Scene moved(Scene scene, const Vec2& by) {
+  for (Vec2& x : scene.fluid.x) x += by;
+  for (Vec2& x : scene.walls) x += by;
   scene.method.domain.box.min += by;
   scene.method.domain.box.max += by;
   return scene;
 }
 
-void expect_same_motion(const Fluid& seen, const Fluid& expected, const Vec& by, double tolerance,
+void expect_same_motion(const Fluid& seen, const Fluid& expected, const Vec2& by, double tolerance,
                         const std::string& what) {
   Fluid back = seen;
-  for (Vec& x : back.x) x -= by;
+  for (Vec2& x : back.x) x -= by;
   // In units of h, c and the largest excess.
   expect_near(back.x, expected.x, tolerance * 0.12, what + ": position");
   expect_near(back.v, expected.v, tolerance * 20.0, what + ": velocity");
@@ -59,7 +59,7 @@ TEST(Translation, ChangesResultsOnlyInRounding) {
       const Scene scene = tank(integrator, precision);
       const Fluid expected = after(scene, 12);
       const double tolerance = precision == Precision::mixed ? 1e-5 : 1e-11;
-      for (const Vec& by : {Vec(0.037, -0.061), Vec(-3.3, 8.9)}) {
+      for (const Vec2& by : {Vec2(0.037, -0.061), Vec2(-3.3, 8.9)}) {
         expect_same_motion(after(moved(scene, by), 12), expected, by, tolerance,
                            name_of(integrator) + ", " + name_of(precision));
       }
@@ -69,7 +69,7 @@ TEST(Translation, ChangesResultsOnlyInRounding) {
 
 TEST(Translation, ByTenThousandTimesTheSceneIsStillRounding) {
   for (const Integrator integrator : kIntegrators) {
-    const Vec by(1e4, -2e4);
+    const Vec2 by(1e4, -2e4);
     // Positions: 2e4 m to 4e-12 m. Mixed precision sees places relative to the scene.
     const Scene exact = tank(integrator, Precision::double_precision);
     expect_same_motion(after(moved(exact, by), 12), after(exact, 12), by, 1e-8,
@@ -86,20 +86,20 @@ TEST(GalileanShift, ChangesNothingButTheFrame) {
       Scene scene = tank(integrator, precision);
       scene.walls.clear();
       scene.method.gravity.setZero();
-      const Vec shift(3.0, 0.0);
+      const Vec2 shift(3.0, 0.0);
       // Steps depend on the largest speed: a lone particle has it, the same in both frames.
       scene.fluid.add({0.0, 1.8}, {-1.5, 9.0}, 0.0);
       scene.method.domain.box = {{-3.0, -3.0}, {3.0, 3.0}};
       Scene shifted = scene;
-      for (Vec& v : shifted.fluid.v) v += shift;
+      for (Vec2& v : shifted.fluid.v) v += shift;
 
-      Solver one = solver_for(scene.method, start_from(scene.fluid), {}, {});
-      Solver other = solver_for(shifted.method, start_from(shifted.fluid), {}, {});
+      SolverN<2> one = solver_for(scene.method, start_from(scene.fluid), {}, {});
+      SolverN<2> other = solver_for(shifted.method, start_from(shifted.fluid), {}, {});
       run_steps(one, 12);
       run_steps(other, 12);
       EXPECT_NEAR(other.time() / one.time(), 1.0, 1e-6);
       Fluid back = fluid_of(other.state());
-      for (Vec& v : back.v) v -= shift;
+      for (Vec2& v : back.v) v -= shift;
       const double tolerance = precision == Precision::mixed ? 1e-5 : 1e-11;
       expect_same_motion(back, fluid_of(one.state()), other.time() * shift, tolerance,
                          name_of(integrator) + ", " + name_of(precision));
@@ -128,19 +128,19 @@ TEST(Units, LengthGravityAndDensityScaleOutOfEverythingOverTwelveDecades) {
       other.method.gravity *= k.gravity;
       other.method.reference_density *= k.density;
       other.method.sound_speed *= speed;
-      for (Vec& x : other.fluid.x) x *= k.length;
-      for (Vec& x : other.walls) x *= k.length;
-      for (Vec& v : other.fluid.v) v *= speed;
+      for (Vec2& x : other.fluid.x) x *= k.length;
+      for (Vec2& x : other.walls) x *= k.length;
+      for (Vec2& v : other.fluid.v) v *= speed;
       for (double& excess : other.fluid.excess) excess *= k.density;
 
       Fluid seen = after(other, 40);
-      for (Vec& x : seen.x) x /= k.length;
-      for (Vec& v : seen.v) v /= speed;
+      for (Vec2& x : seen.x) x /= k.length;
+      for (Vec2& v : seen.v) v /= speed;
       for (double& excess : seen.excess) excess /= k.density;
       std::ostringstream what;
       what << name_of(integrator) << ", length x " << k.length << ", gravity x " << k.gravity
            << ", density x " << k.density;
-      expect_same_motion(seen, expected, Vec::Zero(), 1e-9, what.str());
+      expect_same_motion(seen, expected, Vec2::Zero(), 1e-9, what.str());
     }
   }
 }
@@ -149,14 +149,14 @@ TEST(Mirror, ASceneAndItsMirrorImageGoTheSameWay) {
   for (const Integrator integrator : kIntegrators) {
     const Scene scene = tank(integrator, Precision::double_precision);
     Scene image = scene;
-    for (Vec& x : image.fluid.x) x.x() *= -1.0;
-    for (Vec& v : image.fluid.v) v.x() *= -1.0;
-    for (Vec& x : image.walls) x.x() *= -1.0;
+    for (Vec2& x : image.fluid.x) x.x() *= -1.0;
+    for (Vec2& v : image.fluid.v) v.x() *= -1.0;
+    for (Vec2& x : image.walls) x.x() *= -1.0;
     image.method.gravity.x() *= -1.0;
     Fluid seen = after(image, 12);
-    for (Vec& x : seen.x) x.x() *= -1.0;
-    for (Vec& v : seen.v) v.x() *= -1.0;
-    expect_same_motion(seen, after(scene, 12), Vec::Zero(), 1e-11, name_of(integrator));
+    for (Vec2& x : seen.x) x.x() *= -1.0;
+    for (Vec2& v : seen.v) v.x() *= -1.0;
+    expect_same_motion(seen, after(scene, 12), Vec2::Zero(), 1e-11, name_of(integrator));
   }
 }
 
@@ -164,7 +164,7 @@ TEST(Precisions, MixedFollowsDoubleToItsRounding) {
   for (const Integrator integrator : kIntegrators) {
     const Scene mixed = tank(integrator, Precision::mixed);
     const Scene exact = tank(integrator, Precision::double_precision);
-    expect_same_motion(after(mixed, 12), after(exact, 12), Vec::Zero(), 1e-5, name_of(integrator));
+    expect_same_motion(after(mixed, 12), after(exact, 12), Vec2::Zero(), 1e-5, name_of(integrator));
   }
 }
 

@@ -26,13 +26,13 @@ TestMethod pair_method(Precision precision) {
 }
 
 /// Rates of `steps` steps of the leap-frog against all pairs.
-void expect_all_pairs(const TestMethod& m, const Fluid& start, const std::vector<Vec>& walls,
+void expect_all_pairs(const TestMethod& m, const Fluid& start, const std::vector<Vec2>& walls,
                       int steps, const std::string& target, const std::string& what) {
   // Mixed precision resolves 3e-5 h where a domain has several origins, and better in a small one.
   const bool vast = m.domain.box.size().x() > 1024.0 * kH;
   const double single = vast ? 1e-4 : 1e-5;
   const double eps = m.precision == Precision::mixed ? single : 1e-10;
-  Solver solver = solver_for(m, start_from(start), walls, {1, target});
+  SolverN<2> solver = solver_for(m, start_from(start), walls, {1, target});
   for (int n = 0; n < steps; ++n) {
     const Fluid fluid = fluid_of(solver.state());
     const PlainRates expected = plain_rates(m, fluid, walls, plain_wall_pressures(m, fluid, walls));
@@ -47,7 +47,7 @@ void expect_all_pairs(const TestMethod& m, const Fluid& start, const std::vector
   }
 }
 
-void expect_all_pairs_in_both(TestMethod m, const Fluid& fluid, const std::vector<Vec>& walls,
+void expect_all_pairs_in_both(TestMethod m, const Fluid& fluid, const std::vector<Vec2>& walls,
                               int steps, const std::string& what) {
   for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
     m.precision = precision;
@@ -84,7 +84,7 @@ TEST(Neighbours, AreAllFoundWhereParticlesCrowd) {
 TEST(Neighbours, AreAllFoundWhereParticlesCoincide) {
   Dice dice(44);
   Fluid fluid = random_block(dice, {-0.3, -0.3}, 6, 6, kH, 0.1, 1.0, 10.0);
-  for (std::size_t k = 0; k < 6; ++k) fluid.add(fluid.x[0], Vec::Zero(), 1.0);
+  for (std::size_t k = 0; k < 6; ++k) fluid.add(fluid.x[0], Vec2::Zero(), 1.0);
   fluid.add(fluid.x[7], fluid.v[7], 3.0);
   expect_all_pairs_in_both(pair_method(Precision::mixed), fluid, {}, 1, "coincident");
 }
@@ -120,9 +120,9 @@ TEST(Neighbours, AreAllFoundAtTheEdgesOfCells) {
 TEST(Neighbours, AreAllFoundWhereParticlesLieFarApart) {
   Fluid fluid;
   for (int i = 0; i < 5; ++i) {
-    const Vec place(-1.9 + 0.9 * i, 1.8 - 0.8 * i);
+    const Vec2 place(-1.9 + 0.9 * i, 1.8 - 0.8 * i);
     fluid.add(place, {1.0, 0.0}, 1.0);
-    if (i % 2 == 0) fluid.add(place + Vec(0.29, 0.0), {-1.0, 0.0}, 2.0);
+    if (i % 2 == 0) fluid.add(place + Vec2(0.29, 0.0), {-1.0, 0.0}, 2.0);
   }
   expect_all_pairs_in_both(pair_method(Precision::mixed), fluid, {}, 10, "far apart");
 }
@@ -142,8 +142,8 @@ TEST(Neighbours, AreThoseOfBeforeBesideAParticleFarOutsideTheDomain) {
   for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
     for (const std::string& target : simd_targets()) {
       const TestMethod m = pair_method(precision);
-      Solver alone = solver_for(m, start_from(fluid), {}, {1, target});
-      Solver beside = solver_for(m, start_from(more), {}, {1, target});
+      SolverN<2> alone = solver_for(m, start_from(fluid), {}, {1, target});
+      SolverN<2> beside = solver_for(m, start_from(more), {}, {1, target});
       alone.step();
       beside.step();
       const Fluid expected = fluid_of(alone.state());
@@ -161,13 +161,13 @@ TEST(Neighbours, AreAllFoundAcrossTheOriginCellsOfAVastDomain) {
   Dice dice(46);
   // 512 h is 51.2 m: patches that straddle each of these edges, corners among them.
   Fluid fluid;
-  std::vector<Vec> walls;
+  std::vector<Vec2> walls;
   const double edge = 51.2;
-  for (const Vec& center : {Vec(edge, edge), Vec(0.6, edge), Vec(2.0 * edge, 0.5 * edge),
-                            Vec(5.0 * edge, 5.0 * edge), Vec(130.0, 170.0), Vec(3.0, 4.0)}) {
-    const Vec place = Vec(-150.0, -150.0) + center;
+  for (const Vec2& center : {Vec2(edge, edge), Vec2(0.6, edge), Vec2(2.0 * edge, 0.5 * edge),
+                             Vec2(5.0 * edge, 5.0 * edge), Vec2(130.0, 170.0), Vec2(3.0, 4.0)}) {
+    const Vec2 place = Vec2(-150.0, -150.0) + center;
     for (int k = 0; k < 30; ++k) {
-      const Vec x = place + dice.in_box({-0.4, -0.4}, {0.4, 0.4});
+      const Vec2 x = place + dice.in_box({-0.4, -0.4}, {0.4, 0.4});
       fluid.add(x, dice.in_box({-2, -2}, {2, 2}), dice.between(-10, 10));
     }
     for (int k = 0; k < 10; ++k) walls.push_back(place + dice.in_box({-0.5, -0.5}, {0.5, 0.5}));
@@ -188,7 +188,7 @@ TEST(Neighbours, AreAllFoundInALongChannelFarFromTheOrigin) {
     m.domain.box = {{-1.0, -1.0}, {far + 3.0, 3.0}};
     const std::string what = "channel of " + std::to_string(far) + " m";
     // Positions resolve 1e-10 m or better here.
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     for (int n = 0; n < 30; ++n) {
       const Fluid now = fluid_of(solver.state());
       const PlainRates expected = plain_rates(m, now, {}, {});
@@ -204,11 +204,11 @@ TEST(Neighbours, TheBoundOfTheirNumberIsNotBelowTheTruth) {
   Fluid fluid;
   Dice dice(48);
   for (int k = 0; k < 300; ++k) fluid.add(dice.in_box({0, 0}, {0.1, 0.1}));
-  const Solver crowd = solver_for(pair_method(Precision::mixed), start_from(fluid), {}, {});
+  const SolverN<2> crowd = solver_for(pair_method(Precision::mixed), start_from(fluid), {}, {});
   EXPECT_GE(crowd.extremes().max_neighbours, 300U);
 
   const Fluid block = random_block(dice, {-1.0, -1.0}, 20, 20, kH, 0.0, 0.0, 0.0);
-  const Solver even = solver_for(pair_method(Precision::mixed), start_from(block), {}, {});
+  const SolverN<2> even = solver_for(pair_method(Precision::mixed), start_from(block), {}, {});
   // 9 pi = 28.3 lattice points lie within 3 h.
   EXPECT_EQ(even.extremes().max_neighbours, 0U);
 }

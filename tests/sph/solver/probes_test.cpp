@@ -23,16 +23,17 @@ Fluid still_block() {
 
 TEST(PressureProbe, ReturnsALinearFieldWhereTheLatticeIsSymmetric) {
   Fluid fluid = still_block();
-  const auto pressure = [](const Vec& x) { return 300.0 + 40.0 * x.x() - 90.0 * x.y(); };
+  const auto pressure = [](const Vec2& x) { return 300.0 + 40.0 * x.x() - 90.0 * x.y(); };
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     fluid.excess[i] = pressure(fluid.x[i]) / kCSquared;
   }
   for (const KernelKind kernel : kKernels) {
     TestMethod m = plain_method();
     m.kernel = kernel;
-    const Solver solver = solver_for(m, start_from(fluid), {}, {});
+    const SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     // Lattice points, cell centres and edge midpoints, farther than any support from the edges.
-    for (const Vec& point : {Vec(0.05, -0.25), Vec(0.0, -0.2), Vec(0.05, -0.2), Vec(-0.1, -0.15)}) {
+    for (const Vec2& point :
+         {Vec2(0.05, -0.25), Vec2(0.0, -0.2), Vec2(0.05, -0.2), Vec2(-0.1, -0.15)}) {
       // Not dx: where the cut-off meets a lattice point, rounding decides which side it is on.
       for (const double h : {0.07, 0.098, 0.123}) {
         const Probe probe = solver.pressure_at(point, h);
@@ -43,7 +44,7 @@ TEST(PressureProbe, ReturnsALinearFieldWhereTheLatticeIsSymmetric) {
 }
 
 TEST(PressureProbe, HasAWeightOfOneInsideAHalfAtTheSurfaceAndNoneOutside) {
-  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
+  const SolverN<2> solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   // The sum of W over a lattice of h = dx is its integral, 1 - e^-9, to 2 exp(-pi^2) = 1e-4, and
   // what the cut leaves of single particles near it, some 1e-4 each.
   EXPECT_NEAR(solver.pressure_at({0.0, -0.2}, kDx).weight, 1.0, 2e-3);
@@ -52,7 +53,7 @@ TEST(PressureProbe, HasAWeightOfOneInsideAHalfAtTheSurfaceAndNoneOutside) {
 }
 
 TEST(PressureProbe, IsDryWithoutNeighboursWhateverItsSmoothingLength) {
-  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
+  const SolverN<2> solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   for (const double h : {1e-6, 0.01, 0.1, 0.3}) {
     const Probe probe = solver.pressure_at({1.99, 1.99}, h);
     EXPECT_EQ(probe.weight, 0.0);
@@ -69,14 +70,14 @@ void expect_plain_pressures(const std::string& target, KernelKind kernel, int co
   TestMethod m = plain_method();
   m.kernel = kernel;
   const Fluid start = random_block(dice, {-1.0, -1.0}, columns, rows, kDx, 0.2, 1.0, 10.0);
-  const Vec end = Vec(-1.0, -1.0) + kDx * Vec(columns, rows);
-  m.domain.box = {{-3.0, -3.0}, end + Vec(3.0, 3.0)};
-  Solver solver = solver_for(m, start_from(start), {}, {1, target});
+  const Vec2 end = Vec2(-1.0, -1.0) + kDx * Vec2(columns, rows);
+  m.domain.box = {{-3.0, -3.0}, end + Vec2(3.0, 3.0)};
+  SolverN<2> solver = solver_for(m, start_from(start), {}, {1, target});
   for (int n = 0; n < 25; ++n) {
     solver.step();
     const Fluid fluid = fluid_of(solver.state());
     for (int k = 0; k < 20; ++k) {
-      const Vec point = dice.in_box({-1.3, -1.3}, end + Vec(0.3, 0.3));
+      const Vec2 point = dice.in_box({-1.3, -1.3}, end + Vec2(0.3, 0.3));
       TestMethod at = m;
       at.smoothing_length = dice.between(0.02, widest);
       double weighted = 0.0;
@@ -115,7 +116,7 @@ TEST(SurfaceProbe, FindsTheTopOfALatticeToAQuarterOfASpacing) {
       TestMethod m = plain_method();
       m.kernel = kernel;
       m.smoothing_length = ratio * kDx;
-      const Solver solver = solver_for(m, start_from(still_block()), {}, {});
+      const SolverN<2> solver = solver_for(m, start_from(still_block()), {}, {});
       for (double x = -0.6; x < 0.6; x += 0.037) {
         const Probe probe = solver.surface_height_at({x, 0.0});
         EXPECT_NEAR(probe.value, 0.6, 0.25 * kDx) << "x = " << x << ", h/dx = " << ratio;
@@ -129,20 +130,20 @@ TEST(SurfaceProbe, DoesNotCountADropletAboveTheSurface) {
   Fluid fluid = still_block();
   fluid.add({0.0, 1.5});
   fluid.add({0.3, 1.0});
-  const Solver solver = solver_for(plain_method(), start_from(fluid), {}, {});
+  const SolverN<2> solver = solver_for(plain_method(), start_from(fluid), {}, {});
   EXPECT_NEAR(solver.surface_height_at({0.0, 0.0}).value, 0.6, 0.25 * kDx);
   EXPECT_NEAR(solver.surface_height_at({0.3, 0.0}).value, 0.6, 0.25 * kDx);
 }
 
 TEST(SurfaceProbe, HasNoWeightWhereNoFluidIs) {
-  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
+  const SolverN<2> solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   for (const double x : {-1.9, 1.4, 1.9, 50.0, -50.0}) {
     EXPECT_EQ(solver.surface_height_at({x, 0.0}).weight, 0.0) << x;
   }
 }
 
 TEST(FrontProbe, IsHalfASpacingBeforeTheForemostParticle) {
-  const Solver solver = solver_for(plain_method(), start_from(still_block()), {}, {});
+  const SolverN<2> solver = solver_for(plain_method(), start_from(still_block()), {}, {});
   EXPECT_NEAR(solver.surge_front().value, 1.0, 1e-12);
   EXPECT_GT(solver.surge_front().weight, 0.0);
 }
@@ -150,15 +151,15 @@ TEST(FrontProbe, IsHalfASpacingBeforeTheForemostParticle) {
 TEST(DistanceProbe, IsThatOfTheNearestParticleAndInfiniteBeyondTheSupport) {
   Dice dice(72);
   const TestMethod m = plain_method();
-  Solver solver =
+  SolverN<2> solver =
       solver_for(m, start_from(random_block(dice, {-1, -1}, 20, 16, kDx, 0.2, 4.0, 10.0)), {}, {});
   run_steps(solver, 9);
   const Fluid fluid = fluid_of(solver.state());
   int far = 0;
   for (int k = 0; k < 300; ++k) {
-    const Vec point = dice.in_box({-1.9, -1.9}, {1.9, 1.9});
+    const Vec2 point = dice.in_box({-1.9, -1.9}, {1.9, 1.9});
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec& x : fluid.x) nearest = std::min(nearest, (x - point).norm());
+    for (const Vec2& x : fluid.x) nearest = std::min(nearest, (x - point).norm());
     if (nearest > m.support()) nearest = std::numeric_limits<double>::infinity();
     far += std::isinf(nearest) ? 1 : 0;
     ASSERT_DOUBLE_EQ(solver.distance_to_fluid(point), nearest);
@@ -186,7 +187,7 @@ TEST(EnergyProbe, IsThatOfKnownStates) {
   Fluid fluid;
   fluid.add({0.3, 0.7}, {3.0, 4.0}, 25.0);
   fluid.add({-1.0, -0.2}, {0.0, 2.0}, -40.0);
-  const Solver solver = solver_for(m, start_from(fluid), {}, {});
+  const SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
   const Energy energy = solver.energy();
   // 10 kg each.
   EXPECT_NEAR(energy.kinetic, 0.5 * 10.0 * (25.0 + 4.0), 1e-11);
@@ -201,7 +202,7 @@ TEST(EnergyProbe, KeepsItsDigitsFromNoCompressionToMuch) {
   for (const double excess : {1e-6, -1e-3, 0.1, 5.0, -19.99, 19.99, 20.01, -20.01, 200.0}) {
     Fluid fluid;
     fluid.add({0.0, 0.0}, {0.0, 0.0}, excess);
-    const Solver solver = solver_for(plain_method(), start_from(fluid), {}, {});
+    const SolverN<2> solver = solver_for(plain_method(), start_from(fluid), {}, {});
     const double expected = 10.0 * compression_energy(excess);
     EXPECT_NEAR(solver.energy().internal, expected, 1e-9 * expected) << excess;
   }
@@ -214,7 +215,7 @@ TEST(EnergyProbe, OfAFallingParticleIsKept) {
     m.gravity = {0.0, -9.81};
     Fluid fluid;
     fluid.add({0.0, 1.5}, {0.3, 0.0});
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     const double start = solver.energy().total();
     run_steps(solver, 400);
     EXPECT_GT(solver.energy().kinetic, 50.0);

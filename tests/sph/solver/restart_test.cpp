@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kColumns = 34;
 constexpr int kRows = 26;
-const Vec kCorner(-1.7, -1.6);
+const Vec2 kCorner(-1.7, -1.6);
 
 TestMethod method_of(Integrator integrator, Precision precision) {
   TestMethod m = full_method();
@@ -36,15 +36,15 @@ Fluid splash() {
   return fluid;
 }
 
-std::vector<Vec> tank() { return walls_around(kCorner, kColumns, kRows, 0.1); }
+std::vector<Vec2> tank() { return walls_around(kCorner, kColumns, kRows, 0.1); }
 
 struct Whole {
-  SolverState end;
+  SolverStateN<2> end;
   std::vector<std::uint64_t> sorted_at;  ///< steps in which a sort took place
 };
 
 Whole uninterrupted(const TestMethod& m, std::uint64_t steps) {
-  Solver solver = solver_for(m, start_from(splash()), tank(), {});
+  SolverN<2> solver = solver_for(m, start_from(splash()), tank(), {});
   Whole run;
   for (std::uint64_t n = 0; n < steps; ++n) {
     const auto sorts = solver.sort_count();
@@ -57,14 +57,15 @@ Whole uninterrupted(const TestMethod& m, std::uint64_t steps) {
 
 /// Stops before each of the given steps and goes on in a new solver, with 1, 2, 3 and 8 threads in
 /// turn.
-SolverState in_parts(const TestMethod& m, std::uint64_t steps, std::vector<std::uint64_t> stops) {
+SolverStateN<2> in_parts(const TestMethod& m, std::uint64_t steps,
+                         std::vector<std::uint64_t> stops) {
   std::sort(stops.begin(), stops.end());
   stops.push_back(steps);
   constexpr int kThreads[] = {1, 2, 3, 8};
-  SolverState state = start_from(splash());
+  SolverStateN<2> state = start_from(splash());
   std::size_t part = 0;
   for (const std::uint64_t stop : stops) {
-    Solver solver = solver_for(m, state, tank(), {kThreads[part++ % 4], ""});
+    SolverN<2> solver = solver_for(m, state, tank(), {kThreads[part++ % 4], ""});
     while (solver.step_count() < stop) solver.step();
     state = solver.state();
   }
@@ -87,9 +88,9 @@ TEST_P(ThreadsAndRestart, TheSplashSortsAndLosesParticlesElseItProvesLittle) {
 
 TEST_P(ThreadsAndRestart, AnyNumberOfThreadsGivesTheSameBits) {
   const TestMethod m = method();
-  const SolverState expected = uninterrupted(m, 30).end;
+  const SolverStateN<2> expected = uninterrupted(m, 30).end;
   for (const int threads : {2, 3, 8}) {
-    Solver solver = solver_for(m, start_from(splash()), tank(), {threads, ""});
+    SolverN<2> solver = solver_for(m, start_from(splash()), tank(), {threads, ""});
     run_steps(solver, 30);
     expect_same_bits(solver.state(), expected, std::to_string(threads) + " threads");
   }
@@ -117,7 +118,7 @@ TEST_P(ThreadsAndRestart, AStopAfterEveryStepGivesTheSameBits) {
 
 TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
   const TestMethod m = method();
-  const SolverState expected = uninterrupted(m, 60).end;
+  const SolverStateN<2> expected = uninterrupted(m, 60).end;
   Dice dice(12);
   for (int trial = 0; trial < 6; ++trial) {
     std::vector<std::uint64_t> stops;
@@ -130,7 +131,7 @@ TEST_P(ThreadsAndRestart, StopsAtRandomStepsGiveTheSameBits) {
 TestMethod lifting(TestMethod m) {
   m.laminar_viscosity = LaminarViscosity{0.01};
   m.wall_artificial_viscosity.reset();
-  m.domain.gate = GateMotion{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
+  m.domain.gate = GateMotionN<2>{{{1.7, -1.6}, {2.0, 1.0}}, 15.0};
   return m;
 }
 
@@ -147,7 +148,7 @@ TEST_P(ThreadsAndRestart, AStopWhileAWallIsLiftedGivesTheSameBits) {
 
 TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
   const TestMethod m = method();
-  Solver watched = solver_for(m, start_from(splash()), tank(), {});
+  SolverN<2> watched = solver_for(m, start_from(splash()), tank(), {});
   for (int n = 0; n < 30; ++n) {
     expect_same_bits(watched.state(), watched.state(), "taken twice");
     static_cast<void>(watched.energy());
@@ -162,10 +163,10 @@ TEST_P(ThreadsAndRestart, TakingTheStateChangesNothing) {
 TEST_P(ThreadsAndRestart, AStateGivenToASolverComesBackAsItWas) {
   const TestMethod m = method();
   for (const int steps : {1, 7, 20, 33}) {
-    Solver solver = solver_for(m, start_from(splash()), tank(), {});
+    SolverN<2> solver = solver_for(m, start_from(splash()), tank(), {});
     run_steps(solver, steps);
-    const SolverState taken = solver.state();
-    const Solver next = solver_for(m, taken, tank(), {2, ""});
+    const SolverStateN<2> taken = solver.state();
+    const SolverN<2> next = solver_for(m, taken, tank(), {2, ""});
     expect_same_bits(next.state(), taken, "after " + std::to_string(steps) + " steps");
     EXPECT_EQ(next.particle_count(), taken.particles.size());
     EXPECT_EQ(next.step_count(), taken.step);
@@ -176,12 +177,12 @@ TEST_P(ThreadsAndRestart, AStateGivenToASolverComesBackAsItWas) {
 
 TEST_P(ThreadsAndRestart, WhatReadersSeeDoesNotDependOnAStop) {
   const TestMethod m = method();
-  Solver solver = solver_for(m, start_from(splash()), tank(), {});
+  SolverN<2> solver = solver_for(m, start_from(splash()), tank(), {});
   run_steps(solver, 33);
-  const Solver next = solver_for(m, solver.state(), tank(), {});
+  const SolverN<2> next = solver_for(m, solver.state(), tank(), {});
   for (double x = -1.5; x < 1.7; x += 0.31) {
     EXPECT_EQ(next.surface_height_at({x, 0.0}).value, solver.surface_height_at({x, 0.0}).value);
-    const Vec point(x, -1.3);
+    const Vec2 point(x, -1.3);
     EXPECT_EQ(next.pressure_at(point, 0.12).value, solver.pressure_at(point, 0.12).value);
     EXPECT_EQ(next.pressure_at(point, 0.12).weight, solver.pressure_at(point, 0.12).weight);
     EXPECT_EQ(next.distance_to_fluid(point), solver.distance_to_fluid(point));
@@ -195,13 +196,13 @@ TEST_P(ThreadsAndRestart, WhatReadersSeeDoesNotDependOnAStop) {
 }
 
 /// Hands the same particles over in another order.
-SolverState shuffled(const SolverState& state, std::uint64_t seed) {
+SolverStateN<2> shuffled(const SolverStateN<2>& state, std::uint64_t seed) {
   std::vector<std::size_t> order(state.particles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   Dice dice(seed);
   for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[dice.below(k)]);
-  SolverState other = state;
-  for (const Field& field : kFields) {
+  SolverStateN<2> other = state;
+  for (const FieldN<2>& field : FieldList<2>::fields) {
     const auto& from = field.values.of(state.particles);
     auto& to = field.values.of(other.particles);
     for (std::size_t k = 0; k < from.size(); ++k) to[k] = from[order[k]];
@@ -211,9 +212,9 @@ SolverState shuffled(const SolverState& state, std::uint64_t seed) {
 
 TEST_P(ThreadsAndRestart, TheOrderInWhichParticlesAreGivenChangesNoBit) {
   const TestMethod m = method();
-  const SolverState expected = uninterrupted(m, 25).end;
+  const SolverStateN<2> expected = uninterrupted(m, 25).end;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Solver solver = solver_for(m, shuffled(start_from(splash()), seed), tank(), {});
+    SolverN<2> solver = solver_for(m, shuffled(start_from(splash()), seed), tank(), {});
     run_steps(solver, 25);
     expect_same_bits(solver.state(), expected, "order " + std::to_string(seed));
   }
@@ -226,10 +227,10 @@ TEST_P(ThreadsAndRestart, CoincidentParticlesAreOrderedByTheirIds) {
   for (int k = 0; k < 7; ++k) {
     fluid.add(fluid.x[20], dice.in_box({-1, -1}, {1, 1}), dice.between(-10, 10));
   }
-  Solver expected = solver_for(m, start_from(fluid), {}, {});
+  SolverN<2> expected = solver_for(m, start_from(fluid), {}, {});
   run_steps(expected, 3);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Solver solver = solver_for(m, shuffled(start_from(fluid), seed), {}, {});
+    SolverN<2> solver = solver_for(m, shuffled(start_from(fluid), seed), {}, {});
     run_steps(solver, 3);
     expect_same_bits(solver.state(), expected.state(), "order " + std::to_string(seed));
   }
@@ -237,10 +238,10 @@ TEST_P(ThreadsAndRestart, CoincidentParticlesAreOrderedByTheirIds) {
 
 TEST_P(ThreadsAndRestart, TheOrderOfTheWallsMovesOnlyTheirPressures) {
   const TestMethod m = method();
-  std::vector<Vec> reversed = tank();
+  std::vector<Vec2> reversed = tank();
   std::reverse(reversed.begin(), reversed.end());
-  Solver one = solver_for(m, start_from(splash()), tank(), {});
-  Solver other = solver_for(m, start_from(splash()), reversed, {});
+  SolverN<2> one = solver_for(m, start_from(splash()), tank(), {});
+  SolverN<2> other = solver_for(m, start_from(splash()), reversed, {});
   run_steps(one, 10);
   run_steps(other, 10);
   expect_same_bits(one.state(), other.state(), "walls reversed");
@@ -276,18 +277,18 @@ RC_GTEST_PROP(RestartProperty, AnySmallFluidGoesOnWithTheSameBits, ()) {
               dice.between(-20, 20));
     if (dice.below(5) == 0) fluid.x.back() = fluid.x.front();  // coincident
   }
-  std::vector<Vec> walls;
+  std::vector<Vec2> walls;
   for (std::size_t k = dice.below(30); k > 0; --k) walls.push_back(dice.in_box({-1, -1}, {1, 1}));
 
-  Solver whole = solver_for(m, start_from(fluid), walls, {});
+  SolverN<2> whole = solver_for(m, start_from(fluid), walls, {});
   run_steps(whole, steps);
-  Solver first = solver_for(m, start_from(fluid), walls, {2, ""});
+  SolverN<2> first = solver_for(m, start_from(fluid), walls, {2, ""});
   run_steps(first, stop);
-  Solver second = solver_for(m, first.state(), walls, {});
+  SolverN<2> second = solver_for(m, first.state(), walls, {});
   run_steps(second, steps - stop);
-  const SolverState a = whole.state();
-  const SolverState b = second.state();
-  for (const Field& field : kFields) {
+  const SolverStateN<2> a = whole.state();
+  const SolverStateN<2> b = second.state();
+  for (const FieldN<2>& field : FieldList<2>::fields) {
     const bool same = field.values.of(a.particles) == field.values.of(b.particles);
     RC_ASSERT(same);
   }

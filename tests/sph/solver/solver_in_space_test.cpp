@@ -1,96 +1,17 @@
-// The engine in three dimensions, of which no run is made yet: it treats all axes alike, loses no
-// momentum, and gives the same bits whatever the threads and wherever it was stopped.
+// The engine in three dimensions: it treats all axes alike, loses no momentum, holds water in a
+// tank, and gives the same bits whatever the threads and wherever it was stopped.
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tests/sph/solver/solver_in_space_test.cpp"
-#include <hwy/foreach_target.h>
-// after foreach_target.h
-#include "engine/sph/loops/sweeps-inl.hpp"
-
-HWY_BEFORE_NAMESPACE();
-namespace sluice::HWY_NAMESPACE {
-
-/// The loops of a scheme with all that a sum may add to: eqs. 7 and 8, viscous stress and shifting.
-void fill_in_space(Sweeps<double, 3>& out) {
-  using Eq7 = Form<DensityDiffusion, 0>;
-  using Eq8 = Form<ArtificialViscosity, 0>;
-  using Stress = Form<LaminarViscosity, 0>;
-  using Shape = WendlandShape;
-  fill_updates(out.updates);
-  out.density_and_acceleration =
-      &sum_rates<Shape, RateSums<3, Sums::both, false, Eq7, Eq8, Stress>, double, 3>;
-  out.density = &sum_rates<Shape, RateSums<3, Sums::density, false, Eq7>, double, 3>;
-  out.density_and_shift = &sum_rates<Shape, RateSums<3, Sums::density, true, Eq7>, double, 3>;
-  out.acceleration =
-      &sum_rates<Shape, RateSums<3, Sums::acceleration, false, Eq8, Stress>, double, 3>;
-  out.wall_pressure = &sum_wall_pressure<Shape, double, 3>;
-  out.reinitialise = &sum_reinitialisation<Shape, double, 3>;
-  out.updates.sum_around = &sum_around<Shape, 3>;
-  out.search = &search_boxes<3>;
-  out.prune = &prune_list<double, 3>;
-}
-
-}  // namespace sluice::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "engine/space/lattice.hpp"
 #include "engine/sph/loops/simd_target.hpp"
-#include "engine/sph/method/removed-inl.hpp"
-#include "engine/sph/pairs/grid-inl.hpp"
-#include "engine/sph/pairs/layout-inl.hpp"
-#include "engine/sph/solver/engine-inl.hpp"
-#include "engine/sph/solver/solver-inl.hpp"
 #include "tests/sph/test_fluids.hpp"
 
 namespace sluice {
-
-HWY_EXPORT(fill_in_space);
-
-template <>
-Sweeps<double, 3> select_sweeps<double, 3>(const MethodN<3>&, const std::string& target) {
-  Sweeps<double, 3> sweeps;
-  with_simd_target(target, [&] { HWY_DYNAMIC_DISPATCH(fill_in_space)(sweeps); });
-  return sweeps;
-}
-template <>
-Sweeps<float, 3> select_sweeps<float, 3>(const MethodN<3>&, const std::string&) {
-  return {};  // all here is in double precision
-}
-
-// clang-format off
-template <>
-struct FieldList<3> {
-  using P = ParticlesN<3>;
-  static constexpr Role state = Role::state;
-  static constexpr std::array fields{
-      FieldN<3>{"x", "m", "", state, CarriedBy::every_scheme, EmptySlot::nowhere, {&P::position, 0}},
-      FieldN<3>{"y", "m", "", state, CarriedBy::every_scheme, EmptySlot::nowhere, {&P::position, 1}},
-      FieldN<3>{"z", "m", "", state, CarriedBy::every_scheme, EmptySlot::nowhere, {&P::position, 2}},
-      FieldN<3>{"vx", "m/s", "", state, CarriedBy::every_scheme, EmptySlot::zero, {&P::velocity, 0}},
-      FieldN<3>{"vy", "m/s", "", state, CarriedBy::every_scheme, EmptySlot::zero, {&P::velocity, 1}},
-      FieldN<3>{"vz", "m/s", "", state, CarriedBy::every_scheme, EmptySlot::zero, {&P::velocity, 2}},
-      FieldN<3>{"density_excess", "kg/m^3", "", state, CarriedBy::every_scheme, EmptySlot::zero, &P::density_excess},
-      FieldN<3>{"vx_half", "m/s", "", state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&P::velocity_half, 0}},
-      FieldN<3>{"vy_half", "m/s", "", state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&P::velocity_half, 1}},
-      FieldN<3>{"vz_half", "m/s", "", state, CarriedBy::modified_leap_frog, EmptySlot::zero, {&P::velocity_half, 2}},
-      FieldN<3>{"density_excess_half", "kg/m^3", "", state, CarriedBy::modified_leap_frog, EmptySlot::zero, &P::density_excess_half},
-      FieldN<3>{"ax", "m/s^2", "", state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&P::acceleration, 0}},
-      FieldN<3>{"ay", "m/s^2", "", state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&P::acceleration, 1}},
-      FieldN<3>{"az", "m/s^2", "", state, CarriedBy::kick_drift_kick, EmptySlot::zero, {&P::acceleration, 2}},
-      FieldN<3>{"x_sorted", "m", "", state, CarriedBy::every_scheme, EmptySlot::nowhere, {&P::position_sorted, 0}},
-      FieldN<3>{"y_sorted", "m", "", state, CarriedBy::every_scheme, EmptySlot::nowhere, {&P::position_sorted, 1}},
-      FieldN<3>{"z_sorted", "m", "", state, CarriedBy::every_scheme, EmptySlot::nowhere, {&P::position_sorted, 2}},
-      FieldN<3>{"id", "1", "", state, CarriedBy::every_scheme, EmptySlot::nobody, &P::id},
-  };
-};
-// clang-format on
-
 namespace {
 
 constexpr double kSpacing = 0.1;  // m
@@ -99,7 +20,7 @@ constexpr int kSteps = 60;        // with several sorts
 using Solver3 = SolverN<3>;
 using State3 = SolverStateN<3>;
 
-/// A scheme with the terms of fill_in_space(); c = 20 m/s.
+/// A scheme with all that a sum between fluid particles may add to; c = 20 m/s.
 MethodN<3> scheme(Integrator integrator) {
   MethodN<3> m;
   m.spacing = kSpacing;
@@ -227,6 +148,87 @@ TEST(SolverInSpace, PutsTheSurfaceAndTheDistanceWhereTheyAre) {
   EXPECT_NEAR(solver.distance_to_fluid({0.0, 0.0, 0.6}), 0.2, 1e-12);
 }
 
+/// Water at rest in an open tank of 8 x 6 x 7 cells whose walls have three layers.
+struct StillTank {
+  MethodN<3> method;
+  FlowDomainN<3> domain;
+  State3 state;
+  std::vector<VecN<3>> walls;
+};
+
+StillTank still_tank(Precision precision) {
+  constexpr CellN<3> kSize{8, 6, 7};
+  StillTank tank;
+  MethodN<3>& m = tank.method;
+  m.spacing = kSpacing;
+  m.smoothing_length = 1.5 * kSpacing;
+  m.reference_density = 1000.0;
+  m.sound_speed = 35.0;
+  m.gravity = {0.0, -9.81, 0.0};
+  m.kernel = KernelKind::wendland_c2;
+  m.precision = precision;
+  m.integrator = Integrator::kick_drift_kick;
+  m.courant = 1.0;
+  m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.1};
+  m.viscosity = ArtificialViscosity{.alpha = 0.02, .epsilon = 0.01, .beta = 0.5};
+  m.wall_shear = WallShear{0.01};
+  m.wall_pressure = WallPressure::clamped;
+  m.shifting = ParticleShifting{2.0};
+  tank.domain.box = {VecN<3>::Constant(-0.5), VecN<3>(1.3, 2.0, 1.2)};
+  for_each_cell<3>({-3, -3, -3}, {10, 5, 9}, [&](const CellN<3>& cell) {
+    const VecN<3> place = kSpacing * (as_vector<3>(cell).array() + 0.5).matrix();
+    bool inside = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      inside = inside && cell[axis] >= 0 && cell[axis] < kSize[axis];
+    }
+    if (!inside) {
+      tank.walls.push_back(place);
+      return;
+    }
+    ParticlesN<3>& p = tank.state.particles;
+    p.id.push_back(static_cast<double>(p.size()));
+    append(p.position, place);
+    append(p.velocity, filled_vec<3>(0.0));
+    const double depth = kSpacing * static_cast<double>(kSize[1]) - place.y();
+    p.density_excess.push_back(1000.0 * 9.81 * depth / (35.0 * 35.0));
+  });
+  return tank;
+}
+
+TEST(SolverInSpace, HoldsStillWaterWithItsPressure) {
+  for (const Precision precision : kPrecisions) {
+    const StillTank tank = still_tank(precision);
+    Solver3 solver(tank.method, tank.domain, tank.state, tank.walls, {});
+    for (int n = 0; n < 400; ++n) solver.step();
+    EXPECT_EQ(solver.particle_count(), tank.state.particles.size()) << name_of(precision);
+    EXPECT_LT(solver.extremes().max_speed, 0.1) << name_of(precision);
+    const double depth = 0.4;
+    const Probe pressure =
+        solver.pressure_at({0.4, 0.6 - depth, 0.35}, tank.method.smoothing_length);
+    EXPECT_NEAR(pressure.value, 1000.0 * 9.81 * depth, 0.05 * 1000.0 * 9.81 * 0.6)
+        << name_of(precision);
+  }
+}
+
+TEST(SolverInSpace, InATankGivesTheSameBitsForAnyThreadsAndAnyStopOnEachTarget) {
+  constexpr int kTankSteps = 60;
+  for (const Precision precision : kPrecisions) {
+    StillTank tank = still_tank(precision);
+    // The lowest two rows are pushed, so that particles change their rows.
+    for (std::size_t i = 0; i < tank.state.particles.size(); ++i) {
+      if (tank.state.particles.position[1][i] < 0.2) tank.state.particles.velocity[2][i] = 2.0;
+    }
+    for (const std::string& target : simd_targets()) {
+      const auto made = [&](const State3& from, int threads) {
+        return Solver3(tank.method, tank.domain, from, tank.walls, {threads, target});
+      };
+      const State3 expected = after(made(tank.state, 1), kTankSteps);
+      expect_same(after(made(tank.state, 2), kTankSteps), expected);
+      const State3 stopped = after(made(tank.state, 2), 23);
+      expect_same(after(made(stopped, 1), kTankSteps - 23), expected);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sluice
-#endif

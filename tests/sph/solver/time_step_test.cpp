@@ -25,7 +25,7 @@ TEST(TimeStep, IsLimitedBySoundAndTheFastestParticle) {
     Fluid fluid;
     fluid.add({0.0, 0.0}, {3.0, 4.0});
     fluid.add({1.0, 0.0}, {-1.0, 0.0});
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     solver.step();
     // C h/(c + |v|)
     EXPECT_NEAR(solver.time_step(), 0.4 * 0.1 / (20.0 + 5.0), 1e-16);
@@ -41,7 +41,7 @@ TEST(TimeStep, IsLimitedByForceWhereAccelerationIsLarge) {
     m.gravity = {3e4, -4e4};
     Fluid fluid;
     fluid.add({0.0, 0.0});
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     solver.step();
     // 0.25 sqrt(h/|a|)
     EXPECT_NEAR(solver.time_step(), 0.25 * std::sqrt(0.1 / 5e4), 1e-16);
@@ -55,21 +55,21 @@ TEST(TimeStep, OfAFluidAtRestIsTheLimitOfSoundAlone) {
   for (const Integrator integrator : kIntegrators) {
     Fluid fluid;
     fluid.add({0.0, 0.0});
-    Solver solver = solver_for(method_of(integrator), start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(method_of(integrator), start_from(fluid), {}, {});
     run_steps(solver, 3);
     EXPECT_NEAR(solver.time(), 3.0 * 0.25 * 0.1 / 20.0, 1e-16);
   }
 }
 
 /// A block under the upper edge of the domain, and one particle more that flies out through it.
-Fluid block_with_an_outsider(const Vec& place, const Vec& velocity) {
+Fluid block_with_an_outsider(const Vec2& place, const Vec2& velocity) {
   Dice dice(61);
   Fluid fluid = random_block(dice, {-0.5, 1.5}, 10, 4, 0.1, 0.1, 0.1, 5.0);
   fluid.add(place, velocity, 1.0);
   return fluid;
 }
 
-void run_until_removed(Solver& solver) {
+void run_until_removed(SolverN<2>& solver) {
   for (int n = 0; n < 200 && solver.removed().empty(); ++n) solver.step();
 }
 
@@ -83,12 +83,12 @@ TEST(Leaving, AboveTheWallIsOvertoppingAndBelowItALeak) {
     fluid.add({1.5, 0.5}, {20.0, 0.0});
     fluid.add({1.5, 1.5}, {20.0, 0.0});
     fluid.add({0.0, -1.5}, {0.0, -20.0});
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     run_steps(solver, 100);
     ASSERT_EQ(solver.removed().size(), 4U);
     EXPECT_EQ(solver.particle_count(), 1U);
     EXPECT_EQ(solver.state().particles.size(), 1U);
-    for (const RemovedParticle& r : solver.removed()) {
+    for (const RemovedParticleN<2>& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 3.0;
       EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
       EXPECT_FALSE(m.domain.box.contains(r.position)) << r.id;
@@ -104,17 +104,17 @@ TEST(Leaving, OverTheRimIsOvertoppingBeforeItFallsBehindTheWall) {
     TestMethod m = method_of(integrator);
     m.gravity = {0.0, -9.81};
     m.domain.wall_top = 0.0;
-    m.domain.rim_left = -1.0;
-    m.domain.rim_right = 1.0;
+    m.domain.rim.min[0] = -1.0;
+    m.domain.rim.max[0] = 1.0;
     Fluid fluid;
     fluid.add({0.0, 0.5});                // falls back into the tank
     fluid.add({0.7, 0.2}, {3.0, 0.0});    // passes the right rim 0.15 above it
     fluid.add({-0.7, 0.2}, {-3.0, 0.0});  // and the left one
     fluid.add({1.2, -0.5}, {4.0, 0.0});   // has been behind the wall from the start
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     while (solver.time() < 0.4) solver.step();
     ASSERT_EQ(solver.removed().size(), 3U);
-    for (const RemovedParticle& r : solver.removed()) {
+    for (const RemovedParticleN<2>& r : solver.removed()) {
       const bool over = r.id == 1.0 || r.id == 2.0;
       EXPECT_EQ(r.cause, over ? RemovalCause::overtopped : RemovalCause::leaked) << r.id;
       EXPECT_EQ(m.domain.box.contains(r.position), over) << r.id;
@@ -127,7 +127,7 @@ TEST(Leaving, WithoutATankIsALeakEverywhere) {
   Fluid fluid;
   fluid.add({0.0, 1.5}, {0.0, 20.0});
   fluid.add({0.0, 0.0});
-  Solver solver = solver_for(m, start_from(fluid), {}, {});
+  SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
   run_until_removed(solver);
   ASSERT_EQ(solver.removed().size(), 1U);
   EXPECT_EQ(solver.removed()[0].cause, RemovalCause::leaked);
@@ -141,7 +141,7 @@ TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
     m.diffusion = DensityDiffusion{};
     // It passes close to the block and is within its support when it leaves.
     const Fluid start = block_with_an_outsider({0.02, 1.94}, {0.0, 4.0});
-    Solver solver = solver_for(m, start_from(start), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(start), {}, {});
     run_until_removed(solver);
     ASSERT_EQ(solver.removed().size(), 1U);
     ASSERT_EQ(solver.removed()[0].id, 40.0);
@@ -159,7 +159,7 @@ TEST(Leaving, TakesTheParticleOutOfEverySumAndTheRestGoesOn) {
     EXPECT_EQ(solver.removed().size(), 1U) << "retired more than once";
     const Fluid fluid = fluid_of(solver.state());
     double kinetic = 0.0;
-    for (const Vec& v : fluid.v) kinetic += 0.5 * 10.0 * v.squaredNorm();
+    for (const Vec2& v : fluid.v) kinetic += 0.5 * 10.0 * v.squaredNorm();
     EXPECT_NEAR(solver.energy().kinetic, kinetic, 1e-12 * kinetic);
   }
 }
@@ -173,7 +173,7 @@ TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
       m.reinitialisation = Reinitialisation{2};
       Fluid fluid;
       for (int k = 0; k < 3; ++k) fluid.add({0.4 * k, 1.9}, {0.0, 15.0});
-      Solver solver = solver_for(m, start_from(fluid), {{0.0, -1.0}}, {2, ""});
+      SolverN<2> solver = solver_for(m, start_from(fluid), {{0.0, -1.0}}, {2, ""});
       run_steps(solver, 40);
       EXPECT_EQ(solver.particle_count(), 0U);
       EXPECT_EQ(solver.removed().size(), 3U);
@@ -184,7 +184,7 @@ TEST(Leaving, OfAllParticlesLeavesASolverThatStillSteps) {
       EXPECT_EQ(solver.surface_height_at({0.0, 0.0}).weight, 0.0);
       EXPECT_EQ(solver.wall_pressures(), std::vector<double>{0.0});
       // The empty state is one to go on from.
-      Solver next = solver_for(m, solver.state(), {{0.0, -1.0}}, {});
+      SolverN<2> next = solver_for(m, solver.state(), {{0.0, -1.0}}, {});
       next.step();
       solver.step();
       expect_same_bits(next.state(), solver.state(), "nobody left");
@@ -199,7 +199,7 @@ TEST(Leaving, ARunawayNeitherGrowsMemoryNorForcesASortAtEachStep) {
     Dice dice(62);
     Fluid fluid = random_block(dice, {-1.0, -1.0}, 10, 10, 0.1, 0.0, 0.0, 0.0);
     fluid.add({0.5, 1.0}, {20.0, 0.0});  // c
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     const std::size_t before = solver.memory_bytes();
     constexpr int kSteps = 2000;
     run_steps(solver, kSteps);
@@ -214,7 +214,7 @@ TEST(Leaving, AParticleThatStartsOutsideIsRemovedAtTheFirstStep) {
     Fluid fluid;
     fluid.add({0.0, 0.0});
     fluid.add({1e9, -1e9});
-    Solver solver = solver_for(method_of(integrator), start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(method_of(integrator), start_from(fluid), {}, {});
     solver.step();
     EXPECT_EQ(solver.particle_count(), 1U);
     EXPECT_EQ(solver.removed().size(), 1U);
@@ -233,7 +233,7 @@ TEST(EmptySlots, NeverLeakIntoWhatReadersSee) {
         Fluid fluid;
         // Rising: they slow down while anything at rest speeds up.
         for (int k = 0; k < count; ++k) fluid.add({1.3 * k, 0.7 * k}, {0.0, 9.81}, 2.0 + k);
-        Solver solver = solver_for(m, start_from(fluid), {}, {});
+        SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
         const std::string what = std::to_string(count) + " particles, " + name_of(integrator);
         while (solver.time() < 0.7) solver.step();
         const double v = 9.81 * (1.0 - solver.time());

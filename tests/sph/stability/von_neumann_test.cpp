@@ -14,7 +14,7 @@ namespace sluice {
 namespace {
 
 Method bare(Integrator integrator) {
-  Method m = plain_method();
+  Method m = method_as<kAnyDim>(plain_method());
   m.integrator = integrator;
   m.kernel = KernelKind::truncated_gaussian;
   m.smoothing_length = m.spacing;
@@ -31,10 +31,10 @@ double largest_gradient() {
   double most = 0.0;
   for (double kx = 0.0; kx < std::numbers::pi; kx += 0.01) {
     for (double ky = 0.0; ky <= kx; ky += 0.01) {
-      Vec sum = Vec::Zero();
+      Vec2 sum = Vec2::Zero();
       for (const double x : {kx, kx - kImage}) {
         for (const double y : {ky, ky - kImage}) {
-          sum += Vec(x, y) * std::exp(-Vec(x, y).squaredNorm() / 4);
+          sum += Vec2(x, y) * std::exp(-Vec2(x, y).squaredNorm() / 4);
         }
       }
       most = std::max(most, sum.norm());

@@ -52,7 +52,7 @@ TEST(TermList, HasASummandForEachFormOfATerm) {
 }
 
 TEST(TermList, IsTheMembersOfAMethod) {
-  Method m;
+  MethodN<2> m;
   for_each_term(AllTerms{}, [&]<class Term>() { EXPECT_FALSE(m.term<Term>()) << "left out"; });
   m.viscosity = ArtificialViscosity{.alpha = 0.5};
   EXPECT_EQ(m.term<ArtificialViscosity>()->alpha, 0.5);

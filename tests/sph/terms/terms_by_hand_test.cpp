@@ -26,8 +26,8 @@ double grad_W(double R) { return 2.0 * R / kH * W(R); }
 
 TEST(PressureTerm, TwoParticlesUnderPressurePushEachOtherApart) {
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), 10.0);
-  fluid.add({0.0, 1.5 * kH}, Vec::Zero(), 25.0);
+  fluid.add({0.0, 0.0}, Vec2::Zero(), 10.0);
+  fluid.add({0.0, 1.5 * kH}, Vec2::Zero(), 25.0);
   const auto rates = rates_at_start(plain_method(), fluid, {});
   // p/rho^2 with p = c^2 times the excess.
   const double push =
@@ -41,17 +41,17 @@ TEST(PressureTerm, TwoParticlesUnderPressurePushEachOtherApart) {
 
 TEST(PressureTerm, NegativePressurePullsTogetherForThereIsNoClampInTheFluid) {
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), -10.0);
-  fluid.add({kH, 0.0}, Vec::Zero(), -10.0);
+  fluid.add({0.0, 0.0}, Vec2::Zero(), -10.0);
+  fluid.add({kH, 0.0}, Vec2::Zero(), -10.0);
   const auto rates = rates_at_start(plain_method(), fluid, {});
   EXPECT_CLOSE(rates.acceleration[0].x(), kMass * 2.0 * 4000.0 / (990.0 * 990.0) * grad_W(1.0));
 }
 
 TEST(PressureTerm, AParticleInTheMiddleOfACrossFeelsNothing) {
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), 30.0);
-  for (const Vec& arm : {Vec(kH, 0.0), Vec(-kH, 0.0), Vec(0.0, kH), Vec(0.0, -kH)}) {
-    fluid.add(arm, Vec::Zero(), 12.0);
+  fluid.add({0.0, 0.0}, Vec2::Zero(), 30.0);
+  for (const Vec2& arm : {Vec2(kH, 0.0), Vec2(-kH, 0.0), Vec2(0.0, kH), Vec2(0.0, -kH)}) {
+    fluid.add(arm, Vec2::Zero(), 12.0);
   }
   const auto rates = rates_at_start(plain_method(), fluid, {});
   EXPECT_NEAR(rates.acceleration[0].norm(), 0.0, 1e-12 * rates.acceleration[1].norm());
@@ -87,8 +87,8 @@ TEST(DiffusionTerm, MolteniColagrossiIsFourDeltaCOverHTimesTheVolumeAverage) {
   m.diffusion = DensityDiffusion{DiffusionKind::molteni_colagrossi, 0.1};
   m.gravity = {0.0, -9.81};  // which this term does not know
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), 10.0);
-  fluid.add({0.6 * kH, 0.8 * kH}, Vec::Zero(), 25.0);
+  fluid.add({0.0, 0.0}, Vec2::Zero(), 10.0);
+  fluid.add({0.6 * kH, 0.8 * kH}, Vec2::Zero(), 25.0);
   const auto rates = rates_at_start(m, fluid, {});
   EXPECT_CLOSE(rates.density[0], 4.0 * 0.1 * kC / kH * 15.0 * W(1.0) * kMass / 1025.0);
   EXPECT_CLOSE(rates.density[1], -4.0 * 0.1 * kC / kH * 15.0 * W(1.0) * kMass / 1010.0);
@@ -101,8 +101,8 @@ TEST(DiffusionTerm, FourtakasLeavesAHydrostaticPairAlone) {
   // p = rho_0 g depth: the lower one is denser by rho_0 g h/c^2.
   const double difference = kRho0 * 9.81 * kH / (kC * kC);
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), 5.0 + difference);
-  fluid.add({0.0, kH}, Vec::Zero(), 5.0);
+  fluid.add({0.0, 0.0}, Vec2::Zero(), 5.0 + difference);
+  fluid.add({0.0, kH}, Vec2::Zero(), 5.0);
   const double size = 4.0 * 0.1 * kC / kH * difference * W(1.0) * kMass / kRho0;
   const auto rates = rates_at_start(m, fluid, {});
   EXPECT_NEAR(rates.density[0], 0.0, 1e-11 * size);
@@ -115,8 +115,8 @@ TEST(DiffusionTerm, FourtakasDiffusesWhatIsNotHydrostatic) {
   m.diffusion = DensityDiffusion{DiffusionKind::fourtakas, 0.1};
   const double hydrostatic = kRho0 * 9.81 * kH / (kC * kC);
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), 5.0);
-  fluid.add({0.0, kH}, Vec::Zero(), 5.0);
+  fluid.add({0.0, 0.0}, Vec2::Zero(), 5.0);
+  fluid.add({0.0, kH}, Vec2::Zero(), 5.0);
   const auto rates = rates_at_start(m, fluid, {});
   // Equal densities: the lower one lacks the hydrostatic difference and gains.
   EXPECT_NEAR(rates.density[0] / (4.0 * 0.1 * kC / kH * hydrostatic * W(1.0) * kMass / 1005.0), 1.0,
@@ -221,11 +221,11 @@ TEST(LaminarViscosityTerm, SlowsAParabolicProfileByTwiceNu) {
   Fluid fluid;
   for (int row = -6; row <= 6; ++row) {
     for (int column = -6; column <= 6; ++column) {
-      const Vec place = m.spacing * Vec(column, row);
+      const Vec2 place = m.spacing * Vec2(column, row);
       fluid.add(place, {-place.y() * place.y(), 0.0}, 0.0);
     }
   }
-  const Vec middle = rates_at_start(m, fluid, {}).acceleration[fluid.size() / 2];
+  const Vec2 middle = rates_at_start(m, fluid, {}).acceleration[fluid.size() / 2];
   EXPECT_NEAR(middle.x(), -2.0 * 0.3, 0.02 * 2.0 * 0.3);
   EXPECT_NEAR(middle.y(), 0.0, 1e-9);
 }
@@ -244,10 +244,10 @@ TEST(WallShearTerm, ActsAgainstWallsOnly) {
 /// Stress on a layer of fluid that slides along a wall at `speed`, from one column of particles.
 double stress_at_wall(const TestMethod& m, double speed) {
   Fluid fluid;
-  std::vector<Vec> walls;
+  std::vector<Vec2> walls;
   for (int row = 0; row < 5; ++row) {
     for (int column = -5; column <= 5; ++column) {
-      const Vec place = m.spacing * Vec(column, row + 0.5);
+      const Vec2 place = m.spacing * Vec2(column, row + 0.5);
       fluid.add(place, {speed, 0.0}, 0.0);
       walls.emplace_back(place.x(), -place.y());
     }
@@ -278,7 +278,7 @@ TEST(WallShearTerm, PutsTheStressOfASkinFrictionOnFluidThatSlidesAlongAWall) {
 
 /// Wall pressures at the start.
 std::vector<double> wall_pressures(TestMethod m, const Fluid& fluid,
-                                   const std::vector<Vec>& walls) {
+                                   const std::vector<Vec2>& walls) {
   m.integrator = Integrator::kick_drift_kick;
   return solver_for(m, start_from(fluid), walls, {}).wall_pressures();
 }
@@ -287,7 +287,7 @@ TEST(WallPressureTerm, AddsTheHeadFromTheParticleToTheWall) {
   TestMethod m = plain_method();
   m.gravity = {0.0, -9.81};
   Fluid fluid;
-  fluid.add({0.0, 0.5 * kH}, Vec::Zero(), 2.0);
+  fluid.add({0.0, 0.5 * kH}, Vec2::Zero(), 2.0);
   const auto p = wall_pressures(m, fluid, {{0.0, -0.5 * kH}, {0.3 * kH, 0.5 * kH}});
   EXPECT_CLOSE(p[0], 400.0 * 2.0 + 1002.0 * 9.81 * kH);
   EXPECT_CLOSE(p[1], 400.0 * 2.0);
@@ -295,8 +295,8 @@ TEST(WallPressureTerm, AddsTheHeadFromTheParticleToTheWall) {
 
 TEST(WallPressureTerm, WeighsItsNeighboursByTheKernel) {
   Fluid fluid;
-  fluid.add({kH, 0.0}, Vec::Zero(), 2.0);
-  fluid.add({-2.0 * kH, 0.0}, Vec::Zero(), 8.0);
+  fluid.add({kH, 0.0}, Vec2::Zero(), 2.0);
+  fluid.add({-2.0 * kH, 0.0}, Vec2::Zero(), 8.0);
   const auto p = wall_pressures(plain_method(), fluid, {{0.0, 0.0}});
   const double w1 = std::exp(-1.0);
   const double w2 = std::exp(-4.0);
@@ -306,7 +306,7 @@ TEST(WallPressureTerm, WeighsItsNeighboursByTheKernel) {
 TEST(WallPressureTerm, IsNegativeUnlessClamped) {
   TestMethod m = plain_method();
   Fluid fluid;
-  fluid.add({kH, 0.0}, Vec::Zero(), -2.0);
+  fluid.add({kH, 0.0}, Vec2::Zero(), -2.0);
   EXPECT_CLOSE(wall_pressures(m, fluid, {{0.0, 0.0}})[0], -800.0);
   m.wall_pressure = WallPressure::clamped;
   EXPECT_EQ(wall_pressures(m, fluid, {{0.0, 0.0}})[0], 0.0);
@@ -314,7 +314,7 @@ TEST(WallPressureTerm, IsNegativeUnlessClamped) {
 
 TEST(WallPressureTerm, PushesTheFluidWithTheDensityOfTheStateEquation) {
   Fluid fluid;
-  fluid.add({0.0, 0.5 * kH}, Vec::Zero(), 2.0);
+  fluid.add({0.0, 0.5 * kH}, Vec2::Zero(), 2.0);
   const auto rates = rates_at_start(plain_method(), fluid, {{0.0, -0.5 * kH}});
   // The wall takes the particle's pressure and so its density.
   EXPECT_CLOSE(rates.acceleration[0].y(), kMass * 2.0 * 800.0 / (1002.0 * 1002.0) * grad_W(1.0));
@@ -324,25 +324,26 @@ TEST(ReinitialisationTerm, MovesBothTimeLevelsByTheSameIncrement) {
   TestMethod m = plain_method();
   m.reinitialisation = Reinitialisation{20};
   Fluid fluid;
-  fluid.add({0.0, 0.0}, Vec::Zero(), 10.0);
-  fluid.add({kH, 0.0}, Vec::Zero(), 25.0);
-  SolverState state = start_from(fluid);
-  Particles& p = state.particles;
+  fluid.add({0.0, 0.0}, Vec2::Zero(), 10.0);
+  fluid.add({kH, 0.0}, Vec2::Zero(), 25.0);
+  SolverStateN<2> state = start_from(fluid);
+  ParticlesN<2>& p = state.particles;
   state.step = 20;
   state.time_step = 1e-4;
   p.velocity_half[0] = p.velocity_half[1] = {0.0, 0.0};
   p.density_excess_half = {9.0, 27.0};
   p.position_sorted[0] = p.position[0];
   p.position_sorted[1] = p.position[1];
-  Solver solver = solver_for(m, state, {}, {});
+  SolverN<2> solver = solver_for(m, state, {}, {});
   solver.step();
   // rho = (W0 + W1)/(W0/rho_i + W1/rho_j); nothing moves yet, so the step itself adds nothing.
   const double w = std::exp(-1.0);
   const double first = (1.0 + w) / (1.0 / 1010.0 + w / 1025.0) - kRho0;
   const double second = (1.0 + w) / (1.0 / 1025.0 + w / 1010.0) - kRho0;
   const std::vector<double> half{9.0 + first - 10.0, 27.0 + second - 25.0};
-  expect_near(by_id(solver.state(), &Particles::density_excess_half), half, 1e-11, "half level");
-  expect_near(by_id(solver.state(), &Particles::density_excess), half, 1e-11, "full level");
+  expect_near(by_id(solver.state(), &ParticlesN<2>::density_excess_half), half, 1e-11,
+              "half level");
+  expect_near(by_id(solver.state(), &ParticlesN<2>::density_excess), half, 1e-11, "full level");
 }
 
 TEST(ReinitialisationTerm, LeavesAnIsolatedParticleAlone) {
@@ -352,9 +353,9 @@ TEST(ReinitialisationTerm, LeavesAnIsolatedParticleAlone) {
   fluid.add({-1.0, -1.0}, {1.0, 0.0}, 7.0);
   for (const Integrator integrator : kIntegrators) {
     m.integrator = integrator;
-    Solver solver = solver_for(m, start_from(fluid), {}, {});
+    SolverN<2> solver = solver_for(m, start_from(fluid), {}, {});
     run_steps(solver, 5);
-    EXPECT_NEAR(by_id(solver.state(), &Particles::density_excess)[0], 7.0, 1e-12);
+    EXPECT_NEAR(by_id(solver.state(), &ParticlesN<2>::density_excess)[0], 7.0, 1e-12);
   }
 }
 
@@ -367,7 +368,8 @@ TEST(AbsentTerms, AFluidAtReferenceDensityAndRestStaysAsItIs) {
       m.precision = precision;
       Dice dice(9);
       const Fluid fluid = random_block(dice, {-0.5, -0.5}, 6, 6, kH, 0.3, 0.0, 0.0);
-      Solver solver = solver_for(m, start_from(fluid), walls_around({-0.5, -0.5}, 6, 6, kH), {});
+      SolverN<2> solver =
+          solver_for(m, start_from(fluid), walls_around({-0.5, -0.5}, 6, 6, kH), {});
       run_steps(solver, 25);
       const Fluid after = fluid_of(solver.state());
       expect_near(after.x, fluid.x, 0.0, "position");

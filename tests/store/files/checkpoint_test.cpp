@@ -41,6 +41,29 @@ TEST(CheckpointFile, ComesBackToTheLastBitForBothIntegrators) {
   }
 }
 
+TEST(CheckpointFile, OfThreeDimensionsComesBackToTheLastBit) {
+  for (const Integrator integrator :
+       {Integrator::modified_leap_frog, Integrator::kick_drift_kick}) {
+    for (const std::size_t count : {0UL, 1UL, 50UL}) {
+      const Checkpoint written = make_checkpoint(123, count, integrator, 3);
+      const Checkpoint read = decode_checkpoint(encode_checkpoint(written));
+      EXPECT_EQ(read.solver.particles.position.size(), 3U);
+      EXPECT_TRUE(same_bits(read, written)) << count;
+    }
+  }
+  EXPECT_NE(physics_digest(make_checkpoint(1, 0, Integrator::kick_drift_kick, 3)),
+            physics_digest(make_checkpoint(1, 0, Integrator::kick_drift_kick, 2)));
+}
+
+TEST(FrameFile, OfThreeDimensionsComesBackAsItWas) {
+  const TemporaryFolder folder;
+  for (const std::size_t count : {0UL, 7UL}) {
+    const Snapshot frame = make_test_snapshot(count, 3);
+    write_snapshot(folder / "f.h5", frame);
+    EXPECT_EQ(read_snapshot(folder / "f.h5"), frame) << count;
+  }
+}
+
 TEST(CheckpointFile, ComesBackWithNothingRemovedAndNoSamples) {
   Checkpoint written = make_checkpoint(0);
   written.solver.removed.clear();

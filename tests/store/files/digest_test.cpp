@@ -58,14 +58,14 @@ TEST(PhysicsDigest, ChangesWithEveryBitOfEveryNumber) {
   flip(checkpoint.solver.time);
   flip(checkpoint.solver.time_step);
   flip(checkpoint.next_snapshot);
-  for (const Field& field : kFields) {
+  for (const Field& field : fields_in(2)) {
     flip(field.values.of(checkpoint.solver.particles));
   }
   for (RemovedParticle& removed : checkpoint.solver.removed) {
     flip(removed.id);
     flip(removed.step);
     flip(removed.time);
-    for (const RemovedField& field : kRemovedFields) flip(field.value.of(removed));
+    for (const RemovedField& field : removed_fields_in(2)) flip(field.value.of(removed));
   }
   for (SampleTable& table : checkpoint.samples) {
     flip(table.time);

@@ -90,7 +90,7 @@ RC_GTEST_PROP(CheckpointFile, AnySoundContentComesBack, ()) {
   checkpoint.build = *text();
   checkpoint.bit_exact = *rc::gen::arbitrary<bool>();
   checkpoint.solver.time = *finite_double();
-  for (const Field& field : kFields) {
+  for (const Field& field : fields_in(2)) {
     if (carries(integrator, field)) {
       field.values.of(checkpoint.solver.particles) = finite_doubles(count);
     }

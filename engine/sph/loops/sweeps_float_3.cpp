@@ -1,0 +1,30 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/sph/loops/sweeps_float_3.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target.h
+#include "engine/sph/loops/sweeps-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sluice::HWY_NAMESPACE {
+
+void fill_float_3(const MethodN<3>& method, Sweeps<float, 3>& out) { fill(method, out); }
+
+}  // namespace sluice::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "engine/sph/loops/simd_target.hpp"
+
+namespace sluice {
+
+HWY_EXPORT(fill_float_3);
+
+template <>
+Sweeps<float, 3> select_sweeps<float, 3>(const MethodN<3>& method, const std::string& target) {
+  Sweeps<float, 3> sweeps;
+  with_simd_target(target, [&] { HWY_DYNAMIC_DISPATCH(fill_float_3)(method, sweeps); });
+  return sweeps;
+}
+
+}  // namespace sluice
+#endif

@@ -1,0 +1,109 @@
+// The start of scenes of three dimensions.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "engine/scene/filling/initial.hpp"
+#include "engine/scene/filling/walls.hpp"
+#include "engine/scene/forecast/estimate.hpp"
+#include "tests/scene/support.hpp"
+
+namespace sluice {
+namespace {
+
+using nlohmann::json;
+using testing::parsed;
+
+/// A tank of 1 m x 0.8 m x 0.6 m, dx = 0.05 m, filled from the left.
+json tank_scene(const json& fluid) {
+  json scene = json::parse(R"({
+    "name": "space",
+    "tank": {"width": 1, "height": 0.8, "depth": 0.6},
+    "gravity": [0, -9.81, 0],
+    "resolution": {"spacing": 0.05},
+    "end_time": 1
+  })");
+  scene["fluid"] = fluid;
+  return scene;
+}
+
+json box(const std::vector<double>& corner, const std::vector<double>& size) {
+  return {{"shape", "box"}, {"corner", corner}, {"size", size}};
+}
+
+TEST(SpaceFilling, PutsAParticleInEachCellOfABoxWithItsHydrostaticPressure) {
+  const Scene scene = parsed(tank_scene(json::array({box({0, 0, 0}, {0.5, 0.4, 0.6})})));
+  const InitialParticles made = create_particles(scene);
+  const Particles& p = made.state.particles;
+  EXPECT_EQ(p.size(), 10U * 8U * 12U);
+  EXPECT_FALSE(made.packing);
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_NEAR(p.density_excess[i] * c2, 1000.0 * 9.81 * (0.4 - p.position[1][i]), 1e-9);
+    EXPECT_EQ(p.velocity[2][i], 0.0);
+  }
+  EXPECT_EQ(static_cast<double>(tank_walls(*scene.tank, scene.method).size()),
+            count_tank_walls(*scene.tank, scene.method));
+  EXPECT_EQ(made.walls.size(), 26U * 3U * 18U + 16U * (26U * 18U - 20U * 12U));
+}
+
+TEST(SpaceFilling, GivesRegionsThatTouchOneLevel) {
+  // A low pool beside a column, under a bridge of water: the bridge's level counts below it.
+  const Scene scene = parsed(tank_scene(
+      json::array({box({0, 0, 0}, {0.5, 0.4, 0.6}), box({0, 0.4, 0}, {0.5, 0.2, 0.3})})));
+  const Particles p = create_particles(scene).state.particles;
+  const double c2 = scene.method.sound_speed * scene.method.sound_speed;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double level = p.position[2][i] < 0.3 ? 0.6 : 0.4;
+    EXPECT_NEAR(p.density_excess[i] * c2, 1000.0 * 9.81 * (level - p.position[1][i]), 1e-6);
+  }
+}
+
+TEST(SpaceFilling, LeavesOutWhatSolidsDisplace) {
+  json text = tank_scene(json::array({box({0, 0, 0}, {0.5, 0.4, 0.6})}));
+  text["obstacles"] = json::array({box({0.2, 0, 0.2}, {0.2, 0.2, 0.2})});
+  EXPECT_EQ(create_particles(parsed(text)).state.particles.size(), 960U - 4U * 4U * 4U);
+}
+
+TEST(SpaceFilling, PacksWhatItsLatticeDoesNotFitToItsMass) {
+  // A pool with a ball on its bed, and walls that are no multiple of the spacing.
+  json text = tank_scene(json::array({box({0, 0, 0}, {1, 0.4, 0.6})}));
+  text["tank"]["depth"] = 0.63;
+  text["fluid"][0]["size"] = {1, 0.4, 0.63};
+  text["obstacles"] =
+      json::array({{{"shape", "sphere"}, {"center", {0.5, 0.15, 0.3}}, {"radius", 0.15}}});
+  const Scene scene = parsed(text);
+  const InitialParticles made = create_particles(scene);
+  ASSERT_TRUE(made.packing);
+  const double ball = 4.0 / 3.0 * std::numbers::pi * std::pow(0.15, 3);
+  const double wanted = (0.4 * 0.63 - ball) / std::pow(0.05, 3);
+  EXPECT_NEAR(static_cast<double>(made.state.particles.size()), wanted, 0.005 * wanted);
+  for (std::size_t i = 0; i < made.state.particles.size(); ++i) {
+    const Vec place = made.state.particles.position_of(i);
+    EXPECT_TRUE(scene.tank->interior().contains(place)) << place.transpose();
+    EXPECT_GT((place - Vec3(0.5, 0.15, 0.3)).norm(), 0.15 - 0.3 * 0.05) << place.transpose();
+  }
+  EXPECT_EQ(exact_estimate(scene).fluid_particles, made.state.particles.size());
+}
+
+TEST(SpaceFilling, PerturbsAllAxes) {
+  json text = tank_scene(json::array({box({0, 0, 0}, {0.5, 0.4, 0.6})}));
+  const Particles still = create_particles(parsed(text)).state.particles;
+  text["perturbation"] = {{"amplitude", 0.1}, {"seed", 3}};
+  const Particles moved = create_particles(parsed(text)).state.particles;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::set<double> shifts;
+    for (std::size_t i = 0; i < still.size(); ++i) {
+      const double shift = moved.position[axis][i] - still.position[axis][i];
+      EXPECT_LE(std::abs(shift), 0.1 * 0.05 + 1e-15);
+      shifts.insert(shift);
+    }
+    EXPECT_GT(shifts.size(), still.size() / 2);
+  }
+}
+
+}  // namespace
+}  // namespace sluice
