@@ -35,6 +35,13 @@ void require_same_run(const Checkpoint& checkpoint, const CheckpointIdentity& id
   }
 }
 
+/// Nobody has left; momenta have as many components as the scene has dimensions.
+std::array<Departed, kRemovalCauses> nobody_departed(const Scene& scene) {
+  std::array<Departed, kRemovalCauses> departed;
+  for (Departed& kind : departed) kind.momentum = filled_vec<kAnyDim>(0.0, scene.dimensions());
+  return departed;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -47,7 +54,8 @@ Simulation::Simulation(Scene scene, const Execution& execution)
       limits_(GuardLimits::for_method(scene_.method)),
       sensors_(scene_),
       solver_(start_solver(execution)),
-      samples_(sensors_.empty_tables()) {
+      samples_(sensors_.empty_tables()),
+      departed_(nobody_departed(scene_)) {
   const Energy energy = solver_.energy();
   count_removed();
   baselines_ = initial_baselines(scene_.method, solver_.state(), energy);
@@ -65,7 +73,8 @@ Simulation::Simulation(Scene scene, const Execution& execution, Checkpoint check
       solver_(resume_solver(scene_, execution, checkpoint.solver)),
       samples_(std::move(checkpoint.samples)),
       baselines_(checkpoint.guards),
-      next_snapshot_(checkpoint.next_snapshot) {
+      next_snapshot_(checkpoint.next_snapshot),
+      departed_(nobody_departed(scene_)) {
   require_same_run(checkpoint, {scene_hash_, scene_.method.integrator});
   samples_ = in_tables_like(sensors_.empty_tables(), std::move(samples_));
   bit_exact_ = checkpoint.bit_exact && checkpoint.build == build_id() &&
@@ -136,9 +145,6 @@ void Simulation::snapshot_written() {
 std::vector<Diagnosis> Simulation::take_warnings() { return std::exchange(warnings_, {}); }
 
 void Simulation::count_removed() {
-  for (Departed& kind : departed_) {
-    if (kind.count == 0) kind.momentum = filled_vec<kAnyDim>(0.0, scene_.dimensions());
-  }
   for (; removed_counted_ < solver_.removed_count(); ++removed_counted_) {
     const RemovedParticle one = solver_.removed(removed_counted_);
     departed_[static_cast<std::size_t>(one.cause)].add(scene_.method, one);

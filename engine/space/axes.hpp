@@ -16,7 +16,8 @@ namespace sluice {
 /// One value for each axis, of as many axes as a scene has.
 template <class T>
 struct AxisValues : std::vector<T> {
-  explicit AxisValues(std::size_t axes = kPlaneDim) : std::vector<T>(axes) {}
+  AxisValues() : AxisValues(kPlaneDim) {}
+  explicit AxisValues(std::size_t axes) : std::vector<T>(axes) {}
 };
 
 template <class T, int Dim>
@@ -43,22 +44,24 @@ template <int Dim, class Axes>
   return to;
 }
 
-/// The i-th values of all axes.
-template <class T, std::size_t kAxes>
-[[nodiscard]] auto vector_of(const std::array<std::vector<T>, kAxes>& values, std::size_t i) {
-  Eigen::Matrix<T, static_cast<int>(kAxes), 1> vector;
+/// The i-th values of all axes, as a vector of a type of as many components.
+template <int Dim, class Axes>
+[[nodiscard]] auto gathered(const Axes& values, std::size_t i) {
+  using Scalar = typename Axes::value_type::value_type;
+  constexpr int kMost = Dim == kAnyDim ? kMostDim : Dim;
+  Eigen::Matrix<Scalar, Dim, 1, 0, kMost, 1> vector(static_cast<Eigen::Index>(values.size()));
   for (std::size_t axis = 0; axis < values.size(); ++axis) {
     vector[static_cast<Eigen::Index>(axis)] = values[axis][i];
   }
   return vector;
 }
+template <class T, std::size_t kAxes>
+[[nodiscard]] auto vector_of(const std::array<std::vector<T>, kAxes>& values, std::size_t i) {
+  return gathered<static_cast<int>(kAxes)>(values, i);
+}
 template <class T>
 [[nodiscard]] auto vector_of(const AxisValues<std::vector<T>>& values, std::size_t i) {
-  Eigen::Matrix<T, kAnyDim, 1, 0, kMostDim, 1> vector(static_cast<Eigen::Index>(values.size()));
-  for (std::size_t axis = 0; axis < values.size(); ++axis) {
-    vector[static_cast<Eigen::Index>(axis)] = values[axis][i];
-  }
-  return vector;
+  return gathered<kAnyDim>(values, i);
 }
 
 /// Adds the components of a vector, each to the values of its axis.

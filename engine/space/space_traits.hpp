@@ -53,11 +53,14 @@ struct SpaceTraits<3> : CountedTraits<3> {
   static constexpr std::string_view energy_unit = "J";
 };
 
-/// factor x^Power, multiplied from the left: ((factor x) x) ... The order is part of the result.
+/// factor x^power, multiplied from the left: ((factor x) x) ... The order is part of the result.
+[[nodiscard]] constexpr double times_power(double factor, double x, int power) {
+  for (int k = 0; k < power; ++k) factor *= x;
+  return factor;
+}
 template <int Power>
 [[nodiscard]] constexpr double times_power(double factor, double x) {
-  for (int k = 0; k < Power; ++k) factor *= x;
-  return factor;
+  return times_power(factor, x, Power);
 }
 
 /// Measure of a lattice's cell: spacing^d.

@@ -42,12 +42,8 @@ struct BoxN {
 
   /// The same box; an `Other` that says its dimensions has to be of as many.
   template <int Other>
-  [[nodiscard]] BoxN<Other> as() const {
-    return {min, max};
-  }
-  template <int Other>
   operator BoxN<Other>() const {
-    return as<Other>();
+    return {min, max};
   }
 
   /// All of space.
@@ -79,7 +75,6 @@ using Box = BoxN<kAnyDim>;
 using Vec2 = VecN<2>;
 using Box2 = BoxN<2>;
 using Vec3 = VecN<3>;
-using Box3 = BoxN<3>;
 
 /// Calls f<2>() or f<3>().
 template <class F>

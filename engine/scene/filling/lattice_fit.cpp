@@ -108,30 +108,6 @@ class FitCheck {
   std::optional<std::string> reason_;
 };
 
-template <int Dim>
-std::vector<bool> obstacles_beside_misfits(const Scene& scene) {
-  const double reach = 1.5 * scene.method.spacing;
-  std::vector<bool> beside(scene.obstacles.size());
-  const std::vector<ShapeN<Dim>> obstacles = shapes_as<Dim>(scene.obstacles);
-  for (const Body& body : bodies(scene)) {
-    if (!lattice_misfit(scene, body)) continue;
-    for (const std::size_t region : body) {
-      const ShapeN<Dim> fluid = shape_as<Dim>(scene.fluid[region].shape);
-      const CellSetN<Dim> cells(fluid, scene.method.spacing, CellFit::exact_spacing);
-      for (std::size_t i = 0; i < beside.size(); ++i) {
-        if (beside[i]) continue;
-        const BoxN<Dim> box = grown(bounds(obstacles[i]), reach);
-        if (!overlap(bounds(fluid), box)) continue;
-        cells.for_each([&](const VecN<Dim>& point, const auto&) {
-          if (beside[i] || !box.contains(point)) return;
-          beside[i] = std::abs(signed_distance(obstacles[i], point)) < reach;
-        });
-      }
-    }
-  }
-  return beside;
-}
-
 }  // namespace
 
 std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body) {
@@ -141,8 +117,26 @@ std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body) 
 
 std::vector<bool> beside_misfits(const Scene& scene) {
   if (scene.obstacles.empty()) return {};
-  return in_dimensions(scene.dimensions(),
-                       [&]<int Dim>() { return obstacles_beside_misfits<Dim>(scene); });
+  const double reach = 1.5 * scene.method.spacing;
+  std::vector<bool> beside(scene.obstacles.size());
+  const std::vector<ShapeN<2>> obstacles = shapes_as<2>(scene.obstacles);
+  for (const Body& body : bodies(scene)) {
+    if (!lattice_misfit(scene, body)) continue;
+    for (const std::size_t region : body) {
+      const ShapeN<2> fluid = shape_as<2>(scene.fluid[region].shape);
+      const CellSetN<2> cells(fluid, scene.method.spacing, CellFit::exact_spacing);
+      for (std::size_t i = 0; i < beside.size(); ++i) {
+        if (beside[i]) continue;
+        const Box2 box = grown(bounds(obstacles[i]), reach);
+        if (!overlap(bounds(fluid), box)) continue;
+        cells.for_each([&](const Vec2& point, const auto&) {
+          if (beside[i] || !box.contains(point)) return;
+          beside[i] = std::abs(signed_distance(obstacles[i], point)) < reach;
+        });
+      }
+    }
+  }
+  return beside;
 }
 
 }  // namespace sluice

@@ -17,8 +17,8 @@ namespace sluice {
 /// more or less than their area. A body that touches neither wall nor obstacle has nothing to fit.
 [[nodiscard]] std::optional<std::string> lattice_misfit(const Scene& scene, const Body& body);
 
-/// Which obstacles a body that does not fit touches at the start: particles of its regions'
-/// lattices lie within one and a half spacings of them.
+/// Which obstacles of a plane scene a body that does not fit touches at the start: particles of its
+/// regions' lattices lie within one and a half spacings of them.
 [[nodiscard]] std::vector<bool> beside_misfits(const Scene& scene);
 
 }  // namespace sluice

@@ -51,7 +51,8 @@ std::optional<std::vector<Vec2>> face_layers_of(const Scene& scene, const std::v
 
 template <int Dim>
 std::vector<Vec> solid_walls(const Scene& scene) {
-  const std::vector<bool> beside = beside_misfits(scene);
+  // Faces have layers of their own in the plane alone.
+  const std::vector<bool> beside = Dim == 2 ? beside_misfits(scene) : std::vector<bool>{};
   const auto own = [&](std::size_t i) -> std::optional<std::vector<VecN<Dim>>> {
     if constexpr (Dim == 2) return face_layers_of(scene, beside, i);
     return std::nullopt;

@@ -26,15 +26,9 @@ struct DiscretisationN : DiscretisationNumbers {
   VecN<Dim> gravity = filled_vec<Dim>(0.0);
 
   [[nodiscard]] int dimensions() const { return static_cast<int>(gravity.size()); }
-  /// Measure of a cell of the lattice, m^d: dx^d.
-  [[nodiscard]] double cell_measure() const { return times_spacing(1.0); }
   /// Mass of every particle, fluid and dummy, kg, in the plane per metre of depth: rho_0 dx^d.
-  [[nodiscard]] double particle_mass() const { return times_spacing(reference_density); }
-
- private:
-  [[nodiscard]] double times_spacing(double factor) const {
-    for (int k = 0; k < dimensions(); ++k) factor *= spacing;
-    return factor;
+  [[nodiscard]] double particle_mass() const {
+    return times_power(reference_density, spacing, dimensions());
   }
 };
 
