@@ -14,8 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-/// Whether such a scene was accepted and could run.
+/// Whether such a scene was accepted and could run before there were schemes, in the plane only.
 bool worked(const WrittenScene& written) {
+  const auto& tank = written.scene.tank;
+  if (written.scene.dimensions() != kPlaneDim || (tank && tank->depth)) return false;
   const bool falls = written.gravity && !written.gravity->isZero(0.0);
   if (written.scene.fluid.empty() || !(falls || written.sound_speed)) return false;
   const Scene scene = resolve(written);

@@ -21,11 +21,16 @@ template <int Dim>
 constexpr int kWays = Dim == 2 ? 8 : 32;  // across a solid
 constexpr double kStepsPerSpacing = 8;
 
-bool is_deep(const GateMotion& gate, const Vec& place, double time, double depth) {
-  Box standing = gate.place;
-  standing.min[kUpAxis] += gate.speed * time;
-  return grown(standing, -depth).contains(place);
-}
+/// The inside of a gate, deeper than the allowed depth.
+template <int Dim>
+struct GateInside {
+  BoxN<Dim> closed;    ///< at t = 0
+  double speed = 0.0;  ///< upwards, of its lower edge, m/s
+
+  [[nodiscard]] bool contains(const VecN<Dim>& place, double time) const {
+    return closed.contains(place) && place[kUpAxis] >= closed.min[kUpAxis] + speed * time;
+  }
+};
 
 void add_tank(const Tank& tank, double depth, FlowDomain& domain) {
   domain.room = grown(tank.interior(), depth);
@@ -95,9 +100,14 @@ class Obstacles {
 
 template <int Dim>
 std::function<bool(const Vec&, double)> in_solids_of(const Scene& scene) {
-  return [obstacles = std::make_shared<const Obstacles<Dim>>(scene), gate = scene.domain.gate,
-          depth = scene.method.spacing](const Vec& place, double time) {
-    return (gate && is_deep(*gate, place, time, depth)) || obstacles->hold_deep(place);
+  std::optional<GateInside<Dim>> gate;
+  if (const auto& moving = scene.domain.gate) {
+    gate = {grown(BoxN<Dim>(moving->place), -scene.method.spacing), moving->speed};
+  }
+  return [obstacles = std::make_shared<const Obstacles<Dim>>(scene), gate](const Vec& any,
+                                                                           double time) {
+    const VecN<Dim> place = any;
+    return (gate && gate->contains(place, time)) || obstacles->hold_deep(place);
   };
 }
 

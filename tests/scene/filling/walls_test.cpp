@@ -20,7 +20,7 @@ Method method(double spacing, double smoothing_ratio = 1.0) {
 
 TEST(TankWalls, AreThreeLayersOfThePapersTank) {
   // 1.61/0.003 = 536.7 -> 537 columns, 200 rows: 3 (537 + 6) + 2 x 3 x 200.
-  const Tank tank{1.61, 0.6, true};
+  const Tank tank{1.61, 0.6, {}, true};
   EXPECT_EQ(tank_walls(tank, method(0.003)).size(), 2829U);
   EXPECT_EQ(count_tank_walls(tank, method(0.003)), 2829.0);
 }
@@ -28,7 +28,7 @@ TEST(TankWalls, AreThreeLayersOfThePapersTank) {
 TEST(TankWalls, AreCountedAsTheyAreMade) {
   for (const bool open : {true, false}) {
     for (const double ratio : {0.8, 1.0, 1.3, 2.5}) {
-      const Tank tank{1.03, 0.47, open};
+      const Tank tank{1.03, 0.47, {}, open};
       EXPECT_EQ(static_cast<double>(tank_walls(tank, method(0.05, ratio)).size()),
                 count_tank_walls(tank, method(0.05, ratio)));
     }
