@@ -27,7 +27,7 @@ std::string percent(const std::optional<double>& share) {
 std::string neighbours_text(const std::optional<double>& most) {
   if (!most) return "-";
   return *most > 0.0 ? brief(*most, 6)
-                     : fmt::format("not counted: never above {}", kManyNeighbours);
+                     : fmt::format("not counted: never above {}", kManyNeighbours<kDim>);
 }
 
 /// What the kinds among the sensors mean, where a word may be taken for something else.

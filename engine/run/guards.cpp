@@ -158,7 +158,7 @@ GuardLimits GuardLimits::for_method(const Method& method) {
   // Fewer are never counted. That is seven times what the paper's support holds; wider supports get
   // the same margin.
   const double in_support = std::numbers::pi * std::pow(method.support() / method.spacing, 2);
-  limits.neighbours = std::max<double>(kManyNeighbours, 7.0 * in_support);
+  limits.neighbours = std::max<double>(kManyNeighbours<kDim>, 7.0 * in_support);
   return limits;
 }
 
