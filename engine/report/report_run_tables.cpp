@@ -7,6 +7,7 @@
 #include "engine/run/guards.hpp"
 #include "engine/scene/forecast/plan.hpp"
 #include "engine/scene/model/vocabulary.hpp"
+#include "engine/space/axes.hpp"
 #include "engine/sph/stability/neighbour_count.hpp"
 
 namespace sluice {
@@ -24,10 +25,10 @@ std::string percent(const std::optional<double>& share) {
 }
 
 /// They are counted only where the lists say that they may be more.
-std::string neighbours_text(const std::optional<double>& most) {
+std::string neighbours_text(const std::optional<double>& most, int dimensions) {
   if (!most) return "-";
   return *most > 0.0 ? brief(*most, 6)
-                     : fmt::format("not counted: never above {}", kManyNeighbours);
+                     : fmt::format("not counted: never above {}", many_neighbours(dimensions));
 }
 
 /// What the kinds among the sensors mean, where a word may be taken for something else.
@@ -109,9 +110,10 @@ Table conservation_table(const Report& report) {
   };
   Table table;
   table.title = "Conservation and guards";
-  table.note =
-      "energies in J per metre of depth; the energy scale is what the fluid brings: "
-      "kinetic and internal energy and its height above its lowest point";
+  table.note = fmt::format(
+      "energies in {}; the energy scale is what the fluid brings: "
+      "kinetic and internal energy and its height above its lowest point",
+      energy_unit(report.scene.dimensions()));
   table.head = {"", "value", "the run fails beyond"};
   table.rows = {
       {"energy scale", brief(kept.energy_scale, 5), "-"},
@@ -128,7 +130,7 @@ Table conservation_table(const Report& report) {
       {"lowest density over reference", cell(facts.min_density_ratio, 4), "excluded below 0.7"},
       {"highest density over reference", cell(facts.max_density_ratio, 4), "excluded above 1.3"},
       {"shortest step, s", brief(facts.min_time_step, 4), "-"},
-      {"most neighbours of a particle", neighbours_text(facts.max_neighbours),
+      {"most neighbours of a particle", neighbours_text(facts.max_neighbours, report.scene.dimensions()),
        brief(limits.neighbours, 4)}};
   return table;
 }

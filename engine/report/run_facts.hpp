@@ -38,7 +38,7 @@ struct RunFacts {
 
 [[nodiscard]] RunFacts run_facts(const nlohmann::ordered_json& outcome);
 
-/// What a run may not make or lose. Energies in J per metre of depth; from the first
+/// What a run may not make or lose. Energies in J, in the plane per metre of depth; from the first
 /// sensor of kind energy, else from the outcome; absent where neither tells.
 struct Conservation {
   std::optional<double> first_energy, last_energy, highest_energy;  ///< total

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "engine/run/advice.hpp"
@@ -157,8 +156,11 @@ GuardLimits GuardLimits::for_method(const Method& method) {
   limits.bulk_density = 0.5 * Method::kDensityLeeway;
   // Fewer are never counted. That is seven times what the paper's support holds; wider supports get
   // the same margin.
-  const double in_support = std::numbers::pi * std::pow(method.support() / method.spacing, 2);
-  limits.neighbours = std::max<double>(kManyNeighbours, 7.0 * in_support);
+  const int dimensions = dimensions_of(method.gravity);
+  const double in_support = in_dimensions(dimensions, [&]<int Dim>() {
+    return points_within<Dim>(method.support() / method.spacing);
+  });
+  limits.neighbours = std::max<double>(many_neighbours(dimensions), 7.0 * in_support);
   return limits;
 }
 
@@ -168,7 +170,9 @@ double GuardLimits::most_of(double share, double particles) {
 }
 
 double GuardLimits::crossing_time(const GuardBaselines& baselines) const {
-  return std::sqrt(baselines.initial_mass / method.reference_density) / method.sound_speed;
+  const double measure = baselines.initial_mass / method.reference_density;
+  return (dimensions_of(method.gravity) == kPlaneDim ? std::sqrt(measure) : std::cbrt(measure)) /
+         method.sound_speed;
 }
 
 double energy_that_left(const Method& method, const RemovedParticle& removed) {

@@ -55,7 +55,7 @@ struct GuardLimits {
   /// So many of `particles` may be excluded or leak: the share of them, in a small run eight or, in
   /// a tiny one, a tenth of all: a handful says nothing of the fluid as a whole.
   [[nodiscard]] static double most_of(double share, double particles);
-  /// Time that sound needs across a square of the fluid's mass, s.
+  /// Time that sound needs across a square or a cube of the fluid's mass, s.
   [[nodiscard]] double crossing_time(const GuardBaselines& baselines) const;
 };
 

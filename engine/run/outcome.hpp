@@ -49,7 +49,7 @@ struct Outcome {
   Departed overtopped;
   Departed leaked;
   Departed excluded;
-  double energy = 0.0;  ///< of the fluid, J per metre of depth
+  double energy = 0.0;  ///< of the fluid, J, in the plane per metre of depth
   GuardBaselines extremes;
   double reference_density = 0.0;  ///< kg/m^3
   std::string physics_digest;      ///< SHA-256; empty after a numerical failure

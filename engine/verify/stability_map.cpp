@@ -79,7 +79,7 @@ StabilityCell make_cell(Method method, const LatticeStability& analysis, double 
 
 StabilityRow make_row(Integrator integrator, double alpha, double delta) {
   const Method method = method_of(integrator, alpha, delta);
-  const LatticeStability analysis(method, Surface::free);
+  const LatticeStability analysis(method_as<2>(method), Surface::free);
   StabilityRow row{integrator, alpha, delta, analysis.courant_limit(), {}};
   for (std::size_t i = 0; i < kAround.size(); ++i) {
     const double courant = row.limit > 0.0 ? row.limit * kAround[i] : kWithoutLimit[i];

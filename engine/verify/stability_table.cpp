@@ -150,7 +150,7 @@ CaseResult limits(CaseRunner&) {
         m.precision = Precision::double_precision;
         m.viscosity = ArtificialViscosity{alpha, 0.01};
         m.diffusion = DensityDiffusion{DiffusionKind::molteni_colagrossi, delta};
-        const double limit = LatticeStability(m, Surface::free).courant_limit();
+        const double limit = LatticeStability(method_as<2>(m), Surface::free).courant_limit();
         for (const double side : {0.97, 1.03}) {
           m.courant = side * limit;
           wrong += measure_noise(m, 2500).grows == (side > 1.0) ? 0 : 1;
@@ -165,7 +165,7 @@ CaseResult limits(CaseRunner&) {
 /// Largest Courant number over its predicted limit at which noise does not grow among particles
 /// displaced by up to half their distance, to 2 %.
 double share_in_disorder(Method m) {
-  const double limit = LatticeStability(m, Surface::free).courant_limit();
+  const double limit = LatticeStability(method_as<2>(m), Surface::free).courant_limit();
   double stable = 0.1;
   double grows = 1.1;
   while (grows - stable > 0.02) {

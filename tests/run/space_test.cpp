@@ -57,16 +57,16 @@ std::string digest_of(const Simulation& simulation) {
 }
 
 TEST(SpaceRun, ResumesFromItsCheckpointsToTheSameBitsWithAnyThreads) {
-  constexpr std::uint64_t kEnd = 150;
+  constexpr std::uint64_t kEnd = 90;
   for (const std::string precision : {"mixed", "double"}) {
     const Scene scene = dam_break(precision);
     Simulation whole(scene, {1, ""});
     run_to_step(whole, kEnd);
     Simulation first(scene, {2, ""});
-    run_to_step(first, 61);
+    run_to_step(first, 41);
     const Bytes image = encode_checkpoint(first.checkpoint());
     Simulation second(scene, {1, ""}, decode_checkpoint(image, identity_of(scene)));
-    run_to_step(second, 110);
+    run_to_step(second, 66);
     const Bytes later = encode_checkpoint(second.checkpoint());
     Simulation third(scene, {2, ""}, decode_checkpoint(later, identity_of(scene)));
     EXPECT_TRUE(third.bit_exact());

@@ -10,9 +10,10 @@ namespace {
 constexpr std::size_t kSchemes = 16;  // of about 100 KiB each
 constexpr std::size_t kRadii = 64;
 
-/// All that LatticeStability and courant_limits look at: a term that they learn belongs in here.
+/// All that LatticeStabilityN and courant_limits look at: a term that they learn belongs in here.
 /// The wall law and beta do not: they are of second order for small waves in water at rest.
 struct SchemeNumbers {
+  int dimensions;
   Integrator integrator;
   KernelKind kernel;
   double spacing;                                      // dx/h
@@ -21,7 +22,8 @@ struct SchemeNumbers {
   double two_nu;  // of the physical viscosity, which alone makes a scheme depend on c and h
 
   explicit SchemeNumbers(const Method& m)
-      : integrator(m.integrator),
+      : dimensions(dimensions_of(m.gravity)),
+        integrator(m.integrator),
         kernel(m.kernel),
         spacing(m.spacing / m.smoothing_length),
         two_nu(scaled_two_nu(m.laminar_viscosity, m)) {
@@ -36,19 +38,34 @@ struct Kept {
   std::shared_ptr<const SchemeAnalysis> analysis;
 };
 
+using AnyLattice = std::variant<LatticeStabilityN<2>, LatticeStabilityN<3>>;
+AnyLattice lattice_of(const Method& method) {
+  return in_dimensions(dimensions_of(method.gravity), [&]<int Dim>() -> AnyLattice {
+    return LatticeStabilityN<Dim>(method_as<Dim>(method), Surface::free);
+  });
+}
+
 }  // namespace
+
+SchemeAnalysis::SchemeAnalysis(const Method& method)
+    : method_(method), lattice_(lattice_of(method)) {}
 
 double SchemeAnalysis::spectral_radius(double courant) const {
   const std::scoped_lock lock(mutex_);
   const auto known = radii_.find(courant);
   if (known != radii_.end()) return known->second;
   if (radii_.size() == kRadii) radii_.clear();
-  return radii_[courant] = lattice_.spectral_radius(courant);
+  return radii_[courant] =
+             std::visit([&](const auto& lattice) { return lattice.spectral_radius(courant); }, lattice_);
 }
 
 CourantLimits SchemeAnalysis::limits() const {
   const std::scoped_lock lock(mutex_);
-  if (!limits_) limits_ = courant_limits(method_, Surface::free);
+  if (!limits_) {
+    limits_ = in_dimensions(dimensions_of(method_.gravity), [&]<int Dim>() {
+      return courant_limits(method_as<Dim>(method_), Surface::free);
+    });
+  }
   return *limits_;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <variant>
 
 #include "engine/sph/stability/von_neumann.hpp"
 
@@ -13,17 +14,16 @@ namespace sluice {
 /// some ten milliseconds. Thread-safe.
 class SchemeAnalysis {
  public:
-  explicit SchemeAnalysis(const Method& method)
-      : method_(method), lattice_(method, Surface::free) {}
+  explicit SchemeAnalysis(const Method& method);
 
-  /// As LatticeStability::spectral_radius.
+  /// As LatticeStabilityN::spectral_radius.
   [[nodiscard]] double spectral_radius(double courant) const;
   /// As courant_limits(method, Surface::free).
   [[nodiscard]] CourantLimits limits() const;
 
  private:
   Method method_;
-  LatticeStability lattice_;
+  std::variant<LatticeStabilityN<2>, LatticeStabilityN<3>> lattice_;
   mutable std::mutex mutex_;
   mutable std::map<double, double> radii_;  ///< by Courant number
   mutable std::optional<CourantLimits> limits_;

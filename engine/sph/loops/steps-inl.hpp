@@ -67,25 +67,19 @@ void density_drift(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, double dt
   }
 }
 
-/// By how much a particle is shifted: not at a free surface, where neighbours lack and the gradient
-/// of the concentration is no sign of disorder. On a lattice of the plane cut by a flat surface the
-/// trace is 1.24 in the first row, 1.82 in the second and 2 from the third on (Wendland, h = 1.5
-/// dx).
-template <int Dim>
-constexpr double kSurfaceTrace = 0.875 * SpaceTraits<Dim>::trace_inside;
-template <int Dim>
-constexpr double kInsideTrace = 0.95 * SpaceTraits<Dim>::trace_inside;
-
+/// Not at a free surface, where neighbours lack and the gradient of the concentration is no sign of
+/// disorder.
 template <typename T, int Dim>
 void shift(const ParticleSpan<Dim>& p, const Rates<T, Dim>& r, const Shift<Dim>& k) {
   const State d;
   const StateVec zero = hn::Zero(d);
   const StateVec one = hn::Set(d, 1.0);
-  constexpr double kPerTrace = 1.0 / (kInsideTrace<Dim> - kSurfaceTrace<Dim>);
+  constexpr double kSurface = ParticleShifting::kSurfaceTrace<Dim>;
+  constexpr double kPerTrace = 1.0 / (ParticleShifting::kInsideTrace<Dim> - kSurface);
   for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(d)) {
     const auto v = load_axes<Dim>(d, p.velocity, s);
     const StateVec trace = load_sums(r, r.blocks.trace, s) * hn::Set(d, k.trace_scale);
-    const StateVec inside = (trace - hn::Set(d, kSurfaceTrace<Dim>)) * hn::Set(d, kPerTrace);
+    const StateVec inside = (trace - hn::Set(d, kSurface)) * hn::Set(d, kPerTrace);
     const StateVec length =
         hn::Min(hn::Max(inside, zero), one) * hn::Sqrt(plain_dot(v, v)) * hn::Set(d, k.per_speed);
     const auto wanted = array_of<Dim>(

@@ -60,9 +60,9 @@ std::uint32_t most_neighbours(ThreadTeam& team, const Layout& layout, const Pair
   });
   std::uint32_t most = 0;
   for (const std::uint32_t entries : most_of) most = std::max(most, entries);
-  if (most * kCluster <= kManyNeighbours) return 0;
+  if (most * kCluster <= kManyNeighbours<Dim>) return 0;
   most = count_most(layout, list, pairs, static_cast<T>(cut_off));
-  return most > kManyNeighbours ? most : 0;
+  return most > kManyNeighbours<Dim> ? most : 0;
 }
 
 }  // namespace sluice

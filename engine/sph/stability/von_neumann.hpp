@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <complex>
 #include <vector>
 
@@ -11,29 +10,36 @@
 namespace sluice {
 
 /// What the sums of eqs. 4, 5, 7 and 8 and the physical viscosity make of a small plane wave exp(i
-/// k . x) of the plane on a square lattice at rest, in units of h and c. With velocity U and
-/// density s = i sigma the rates are
+/// k . x) on a square or cubic lattice at rest, in units of h and c. With velocity U and density
+/// s = i sigma the rates are
 ///   dU/dt = gradient sigma - damping U,  dsigma/dt = -gradient . U - diffusion sigma.
-struct LatticeWave {
-  VecN<2> wave_vector = VecN<2>::Zero();              ///< k h
-  VecN<2> gradient = VecN<2>::Zero();                 ///< sum_j V_j slope X_ij sin(k . X_ij)
-  Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();  ///< of eq. 8 and physical viscosity
-  double diffusion = 0.0;                             ///< of eq. 7
-  std::array<std::complex<double>, 3> rates{};        ///< eigenvalues of the rates, c/h
+template <int Dim>
+struct LatticeWaveN {
+  using Tensor = Eigen::Matrix<double, Dim, Dim>;
+
+  VecN<Dim> wave_vector = VecN<Dim>::Zero();  ///< k h
+  VecN<Dim> gradient = VecN<Dim>::Zero();     ///< sum_j V_j slope X_ij sin(k . X_ij)
+  Tensor damping = Tensor::Zero();            ///< of eq. 8 and physical viscosity
+  double diffusion = 0.0;                     ///< of eq. 7
+  std::vector<std::complex<double>> rates{};  ///< eigenvalues of the rates, c/h
 };
 
 /// Whether waves along a free surface are looked at beside those of the bulk.
 enum class Surface { none, free };
 
-/// Von Neumann analysis of the discrete scheme in the plane: the amplification matrix of one step
-/// for waves of the Brillouin zone, computed from the method's kernel, h/dx, alpha, epsilon, delta
-/// and integrator as the engine does them. Eq. 8 acts between particles that approach, which is
-/// half of the pairs of a short wave and half of the time for a long one, so it counts half. Left
-/// out: walls, gravity, pressure at rest (p << rho_0 c^2), and wall friction. Sources: eqs. 13-17
-/// (they are Adams-Bashforth 2 for velocity and density), Adami et al. 2012.
-class LatticeStability {
+/// Von Neumann analysis of the discrete scheme: the amplification matrix of one step for waves of
+/// the Brillouin zone, computed from the method's kernel, h/dx, alpha, epsilon, delta and
+/// integrator as the engine does them. Eq. 8 acts between particles that approach, which is half of
+/// the pairs of a short wave and half of the time for a long one, so it counts half. Left out:
+/// walls, gravity, pressure at rest (p << rho_0 c^2), and wall friction. Sources: eqs. 13-17 (they
+/// are Adams-Bashforth 2 for velocity and density), Adami et al. 2012.
+template <int Dim>
+class LatticeStabilityN {
  public:
-  LatticeStability(const Method& method, Surface surface);
+  LatticeStabilityN(const MethodN<Dim>& method, Surface surface);
+
+  /// The wave of a wave vector k h, its rates only for the paper's integrator, which needs them.
+  [[nodiscard]] LatticeWaveN<Dim> wave(const VecN<Dim>& k) const;
 
   /// Largest modulus of an eigenvalue of one step of length `courant` h/c, over all waves.
   [[nodiscard]] double spectral_radius(double courant) const;
@@ -49,7 +55,8 @@ class LatticeStability {
   static constexpr double kTolerance = 1e-9;
 
  private:
-  [[nodiscard]] LatticeWave wave(const VecN<2>& k) const;
+  using LatticeWave = LatticeWaveN<Dim>;
+
   [[nodiscard]] double radius(const LatticeWave& wave, double courant) const;
   [[nodiscard]] double radius(const SheetWave& wave, double courant) const;
   /// Lowers `limit` to that of `wave`, if it is lower; true when it was.
@@ -57,8 +64,8 @@ class LatticeStability {
   bool lower(const Wave& wave, double& limit) const;
 
   struct Neighbour {
-    VecN<2> distance;  ///< X_ij = x_ij/h
-    double weight;     ///< V_j slope
+    VecN<Dim> distance;  ///< X_ij = x_ij/h
+    double weight;       ///< V_j slope
   };
   Integrator integrator_;
   double alpha_ = 0.0;
@@ -71,6 +78,9 @@ class LatticeStability {
   std::vector<SheetWave> sheets_;
 };
 
+/// In the plane.
+using LatticeStability = LatticeStabilityN<2>;
+
 /// Largest stable Courant numbers: of the scheme, and of parts of it alone.
 struct CourantLimits {
   double scheme = 0.0;     ///< all terms of the method
@@ -78,6 +88,7 @@ struct CourantLimits {
   double viscosity = 0.0;  ///< eq. 8 and physical viscosity alone; kMostCourant without them
   double diffusion = 0.0;  ///< eq. 7 alone; kMostCourant without it
 };
-[[nodiscard]] CourantLimits courant_limits(const Method& method, Surface surface);
+template <int Dim>
+[[nodiscard]] CourantLimits courant_limits(const MethodN<Dim>& method, Surface surface);
 
 }  // namespace sluice
