@@ -19,8 +19,8 @@ Word known(const std::optional<Word>& word, std::string_view text) {
 }
 
 std::int64_t row_count(std::size_t limit) {
-  constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int64_t>::max());
-  return static_cast<std::int64_t>(std::min(limit, kMost));
+  constexpr auto kLargest = static_cast<std::size_t>(std::numeric_limits<std::int64_t>::max());
+  return static_cast<std::int64_t>(std::min(limit, kLargest));
 }
 
 JobEvent read_event(const SqliteStatement& row) {
