@@ -130,7 +130,8 @@ Table conservation_table(const Report& report) {
       {"lowest density over reference", cell(facts.min_density_ratio, 4), "excluded below 0.7"},
       {"highest density over reference", cell(facts.max_density_ratio, 4), "excluded above 1.3"},
       {"shortest step, s", brief(facts.min_time_step, 4), "-"},
-      {"most neighbours of a particle", neighbours_text(facts.max_neighbours, report.scene.dimensions()),
+      {"most neighbours of a particle",
+       neighbours_text(facts.max_neighbours, report.scene.dimensions()),
        brief(limits.neighbours, 4)}};
   return table;
 }

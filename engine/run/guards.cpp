@@ -157,9 +157,8 @@ GuardLimits GuardLimits::for_method(const Method& method) {
   // Fewer are never counted. That is seven times what the paper's support holds; wider supports get
   // the same margin.
   const int dimensions = dimensions_of(method.gravity);
-  const double in_support = in_dimensions(dimensions, [&]<int Dim>() {
-    return points_within<Dim>(method.support() / method.spacing);
-  });
+  const double in_support = in_dimensions(
+      dimensions, [&]<int Dim>() { return points_within<Dim>(method.support() / method.spacing); });
   limits.neighbours = std::max<double>(many_neighbours(dimensions), 7.0 * in_support);
   return limits;
 }

@@ -59,7 +59,7 @@ def shipped(folder, wanted):
 
 
 def is_dam_break(name):
-    return name.startswith(("dambreak", "martin-moyce"))
+    return name.startswith(("dambreak", "martin-moyce")) or name == "spheric2"
 
 
 def variant(scene, precision, seed, arguments):

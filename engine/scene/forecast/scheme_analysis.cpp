@@ -55,8 +55,8 @@ double SchemeAnalysis::spectral_radius(double courant) const {
   const auto known = radii_.find(courant);
   if (known != radii_.end()) return known->second;
   if (radii_.size() == kRadii) radii_.clear();
-  return radii_[courant] =
-             std::visit([&](const auto& lattice) { return lattice.spectral_radius(courant); }, lattice_);
+  return radii_[courant] = std::visit(
+             [&](const auto& lattice) { return lattice.spectral_radius(courant); }, lattice_);
 }
 
 CourantLimits SchemeAnalysis::limits() const {

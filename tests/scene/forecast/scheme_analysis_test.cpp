@@ -74,7 +74,8 @@ TEST(SchemeAnalysis, OfTooManySchemesIsForgottenAndMadeAgain) {
 }
 
 TEST(SchemeAnalysisThreads, GetTheSameAnswers) {
-  const double expected = LatticeStability(method_as<2>(paper_method()), Surface::free).spectral_radius(0.25);
+  const double expected =
+      LatticeStability(method_as<2>(paper_method()), Surface::free).spectral_radius(0.25);
   std::vector<std::thread> threads;
   for (int n = 0; n < 4; ++n) {
     threads.emplace_back([&] {
