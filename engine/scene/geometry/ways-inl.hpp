@@ -73,6 +73,24 @@ void WaysN<Dim>::for_all_nodes(const F& f) const {
 
 template <int Dim>
 void WaysN<Dim>::seek(const Point& from, double radius, double longest) {
+  const auto nothing = [](const Node&) { return 0.0; };
+  const auto never = [](const Node&) { return false; };
+  seek_by(from, radius, longest, nothing, never);
+}
+
+template <int Dim>
+void WaysN<Dim>::seek(const Point& from, const Point& to, double radius, double longest) {
+  const double apart = (to - from).norm() / spacing_;
+  const double farthest = 0.5 * (longest + apart) + ways::kJoined;
+  const auto left = [&](const Node& n) { return (place_of(n) - to).norm() / spacing_; };
+  const auto in_sight = [&](const Node& n) { return left(n) <= ways::kJoined; };
+  seek_by(from, std::min(radius, farthest), longest, left, in_sight);
+}
+
+template <int Dim>
+template <class Left, class Enough>
+void WaysN<Dim>::seek_by(const Point& from, double radius, double longest, const Left& left,
+                         const Enough& enough) {
   const Point cells = from / cell_;
   for (int axis = 0; axis < Dim; ++axis) {
     middle_node_[axis] = static_cast<std::int64_t>(std::round(cells[axis]));
@@ -84,16 +102,22 @@ void WaysN<Dim>::seek(const Point& from, double radius, double longest) {
   using Reached = std::pair<double, Node>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
   const auto reach = [&](const Node& n, double length) {
-    if (length > longest || length >= length_[index(n)]) return;
+    const double whole = length + left(n);
+    if (whole > longest || length >= length_[index(n)]) return;
     length_[index(n)] = length;
-    next.push({length, n});
+    next.push({whole, n});
   };
-  for_nodes_in_sight(from, reach);
-  shut_ = next.empty();
+  shut_ = true;
+  for_nodes_in_sight(from, [&](const Node& n, double length) {
+    shut_ = false;
+    reach(n, length);
+  });
   while (!next.empty()) {
-    const auto [length, n] = next.top();
+    const auto [whole, n] = next.top();
     next.pop();
-    if (length > length_[index(n)]) continue;
+    const double length = length_[index(n)];
+    if (whole > length + left(n)) continue;
+    if (enough(n)) return;
     for_each_cell<Dim>(
         shifted<Dim>(n, -1), shifted<Dim>(n, 1), [&, &node = n, way = length](const Node& beside) {
           if (!in_reach(beside) || (place_of(beside) - from).norm() > radius * spacing_) return;

@@ -23,6 +23,8 @@ class WaysN {
 
   /// Seeks ways that are no longer than `longest` and stay within `radius` of `from`, spacings.
   void seek(const Point& from, double radius, double longest);
+  /// The same for the shortest way to one place alone.
+  void seek(const Point& from, const Point& to, double radius, double longest);
   /// Whether `from` is in a slit so narrow that no node is in its sight.
   [[nodiscard]] bool shut() const { return shut_; }
   /// Whether particles have room at a node within `radius`, spacings, to which no way was found.
@@ -38,6 +40,11 @@ class WaysN {
   [[nodiscard]] std::size_t index(const Node& n) const;
   [[nodiscard]] bool in_reach(const Node& n) const;
   [[nodiscard]] bool passable(const Node& n);
+  /// `left` is a lower bound of what a way still has before it at a node, spacings. Ends at the
+  /// first node, of those with the least such bound in all, that is `enough`.
+  template <class Left, class Enough>
+  void seek_by(const Point& from, double radius, double longest, const Left& left,
+               const Enough& enough);
   template <class F>
   void for_nodes_in_sight(const Point& place, const F& f);
   template <class F>
