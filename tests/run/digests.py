@@ -93,7 +93,8 @@ def main():
         for key, each in compute(arguments, folder):
             one = each[0]
             rows.append((key, one))
-            verdict = "threads differ" if len(set(each)) > 1 else "" if arguments.write else \
+            verdict = "failed" if one[0].startswith("exit-") else \
+                "threads differ" if len(set(each)) > 1 else "" if arguments.write else \
                 "same" if known.get(key) == one else "not in the list" if key not in known else "differs"
             wrong += verdict not in ("", "same")
             print(" ".join((*key, *one, verdict)), flush=True)

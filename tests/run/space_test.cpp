@@ -75,6 +75,33 @@ TEST(SpaceRun, ResumesFromItsCheckpointsToTheSameBitsWithAnyThreads) {
   }
 }
 
+TEST(SpaceRun, LosesNobodyWithoutATankAndUnderALid) {
+  const Scene ball = parsed(R"({
+    "name": "ball",
+    "fluid": [{"shape": "sphere", "center": [0, 0, 0], "radius": 0.1, "velocity": [1, 0.5, 0.25],
+               "pressure": "zero"}],
+    "material": {"density": 1000, "sound_speed": 20},
+    "resolution": {"spacing": 0.02},
+    "numerics": {"scheme": "recommended"},
+    "end_time": 0.02
+  })");
+  const Scene lid = parsed(R"({
+    "name": "lid",
+    "tank": {"width": 0.2, "height": 0.2, "depth": 0.2, "open_top": false},
+    "fluid": [{"shape": "box", "corner": [0, 0, 0], "size": [0.1, 0.2, 0.2]}],
+    "gravity": [0, -9.81, 0],
+    "resolution": {"spacing": 0.02},
+    "numerics": {"scheme": "recommended"},
+    "end_time": 0.02
+  })");
+  for (const Scene& scene : {ball, lid}) {
+    Simulation run(scene, {1, ""});
+    const std::size_t all = run.solver().particle_count();
+    while (!run.finished()) run.step();
+    EXPECT_EQ(run.solver().particle_count(), all) << scene.name;
+  }
+}
+
 TEST(SpaceRun, ReachesTheBoxAndItsEnd) {
   Simulation run(dam_break("mixed"), {2, ""});
   EXPECT_EQ(run.solver().dimensions(), 3);

@@ -138,12 +138,12 @@ Scene resolve(const WrittenScene& written) {
       written.smoothing_ratio.value_or(default_smoothing_ratio(method.kernel)) * method.spacing;
   method.sound_speed = written.sound_speed ? *written.sound_speed : default_sound_speed(scene);
   scene.domain.box = written.domain ? *written.domain : default_domain(scene);
+  scene.domain.rim = scene.domain.room = Box::everywhere(scene.dimensions());
   // Nothing passes over a lid: what leaves a closed tank has leaked, wherever.
   if (scene.tank && scene.tank->open_top) {
     scene.domain.wall_top = scene.tank->height;
     const double middle = static_cast<double>(wall_layers(method)) / 2 * method.spacing;
     const Box sides = grown(scene.tank->interior(), middle);
-    scene.domain.rim = Box::everywhere(scene.dimensions());
     for (const int axis : floor_axes(scene.dimensions())) {
       scene.domain.rim.min[axis] = sides.min[axis];
       scene.domain.rim.max[axis] = sides.max[axis];
