@@ -244,7 +244,7 @@ void check_reference(const WrittenScene& written, Problems& problems) {
 void check(const WrittenScene& written, const CheckedAs& as, Problems& problems,
            Problems& warnings) {
   const Scene& given = written.scene;
-  check_polygons(given, problems);
+  check_insides(given, problems);
   check_sizes(given, problems);
   check_tank(given, problems);
   check_gravity(written, problems);

@@ -39,6 +39,20 @@ void for_each_shape(const Scene& scene, const Problems& problems, const F& f) {
   }
 }
 
+/// The corners that a shape is told by, if it is.
+const Polygon* polygon_of(const Shape& shape) {
+  if (const auto* prism = std::get_if<Prism>(&shape)) return &prism->section;
+  return std::get_if<Polygon>(&shape);
+}
+
+/// Along the axes of space, but those of a cylinder along and across its own, m.
+Vec size_of(const Shape& shape) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    return Vec2(cylinder->axis.norm(), 2 * cylinder->radius);
+  }
+  return bounds(shape).size();
+}
+
 /// Everything that must lie in the domain: the tank with its walls, else the fluid and obstacles.
 void check_domain_holds(const Scene& scene, const WrittenScene& written, Problems& problems) {
   const Box& domain = scene.domain.box;
@@ -67,13 +81,18 @@ std::string show(const Box& box) {
   return fmt::format("({:.6g}) to ({:.6g}) m", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
 }
 
-void check_polygons(const Scene& scene, Problems& problems) {
+void check_insides(const Scene& scene, Problems& problems) {
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
-    const auto* polygon = std::get_if<Polygon>(&shape);
-    if (polygon != nullptr && (!is_simple(*polygon) || measure(shape) <= 0)) {
+    const Polygon* polygon = polygon_of(shape);
+    if (polygon != nullptr && (!is_simple(*polygon) || measure(*polygon) <= 0)) {
       problems.add(at(pointer, "points"),
                    "the outline crosses, touches or folds back on itself; give the corners in "
                    "order around an area, each once");
+    }
+    const auto* cylinder = std::get_if<Cylinder>(&shape);
+    if (cylinder != nullptr && cylinder->axis.norm() <= 0) {
+      problems.add(at(pointer, "axis"),
+                   "has no length; give the way from the middle of one end to that of the other");
     }
   });
 }
@@ -89,7 +108,7 @@ void check_sizes(const Scene& scene, Problems& problems) {
                              fmt::join(size, " m x "), dx));
   };
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
-    check_size(pointer, bounds(shape).size());
+    check_size(pointer, size_of(shape));
   });
   if (scene.tank && problems.clean({"/tank"})) {
     check_size("/tank", scene.tank->size());

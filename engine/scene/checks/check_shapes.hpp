@@ -9,8 +9,8 @@ namespace sluice {
 
 // The checks that are about places and sizes. Each leaves out what has problems already.
 
-/// Polygons are simple and have an area.
-void check_polygons(const Scene& scene, Problems& problems);
+/// Polygons are simple and have an area, also those of prisms; cylinders have a height.
+void check_insides(const Scene& scene, Problems& problems);
 /// Shapes and the tank are at least one spacing wide and high.
 void check_sizes(const Scene& scene, Problems& problems);
 /// Fluid and obstacles lie inside the tank.

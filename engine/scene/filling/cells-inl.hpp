@@ -50,6 +50,13 @@ inline std::vector<double> crossings(const Polygon& s, const VecN<2>& place) {
   return result;
 }
 
+inline std::vector<double> crossings(const Cylinder& s, const VecN<3>& place) {
+  return chords(s, VecN<3>(0.0, place.y(), place.z()), VecN<3>::Unit(0));
+}
+inline std::vector<double> crossings(const Prism& s, const VecN<3>& place) {
+  return chords(s, VecN<3>(0.0, place.y(), place.z()), VecN<3>::Unit(0));
+}
+
 /// Whether a cell comes before another: by row, numbered (z, y), then along it.
 template <int Dim>
 bool is_before(const CellN<Dim>& one, const CellN<Dim>& other) {

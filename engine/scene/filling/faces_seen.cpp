@@ -93,6 +93,18 @@ struct FacesSeenInSpace {
   std::vector<SeenFace> operator()(const Ellipsoid<3>& s) const {
     return round_face<3>(s, point, dx);
   }
+  std::vector<SeenFace> operator()(const Cylinder& s) const { return round_face<3>(s, point, dx); }
+  std::vector<SeenFace> operator()(const Prism& s) const {
+    std::vector<SeenFace> found;
+    const Point in_section = point.head<2>();
+    const double from = point.z() - s.z;
+    if (from >= 0.0 && from <= s.depth) face_outline(s.section.points, in_section, dx, found);
+    if (!contains(s.section, in_section)) return found;
+    for (const double face : {s.z, s.z + s.depth}) {
+      found.push_back({std::abs(point.z() - face) / dx, true, is_whole(face / dx), kSolid});
+    }
+    return found;
+  }
 };
 
 }  // namespace

@@ -56,6 +56,32 @@ void describe(Archive& a, Polygon& shape) {
            {.about = "corner", .unit = "m", .range = kCoordinate});
 }
 
+template <class Archive>
+void describe(Archive& a, Cylinder& shape) {
+  a.vector(
+      "base", shape.base,
+      {.about = "middle of one end", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.vector("axis", shape.axis,
+           {.about = "from there to the middle of the other end; its length is the height",
+            .unit = "m",
+            .range = kCoordinate,
+            .need = Need::required});
+  a.number("radius", shape.radius,
+           {.about = "radius", .unit = "m", .range = kLength, .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, Prism& shape) {
+  describe(a, shape.section);
+  a.number("z", shape.z,
+           {.about = "where it begins", .unit = "m", .range = kCoordinate, .need = Need::required});
+  a.number("depth", shape.depth,
+           {.about = "how far it goes on along z",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+}
+
 /// A shape, and in the same object the keys that `more` describes.
 template <class Archive, class More>
 void describe_shape(Archive& a, Shape& shape, const More& more) {

@@ -14,6 +14,35 @@ namespace sluice {
 
 // Cuboids, balls and ellipsoids in any number of dimensions; geometry.hpp says what is promised.
 
+/// Distance from a body that several parts meet in at right angles, negative inside, m, from the
+/// distances from each.
+template <class Distances>
+[[nodiscard]] double distance_from_all(const Distances& beyond) {
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+/// Where a line origin + t direction is in one part of a body after another: t of its two ends.
+struct LinePart {
+  double enter = -std::numeric_limits<double>::infinity();
+  double leave = std::numeric_limits<double>::infinity();
+
+  /// Keeps what is between two faces, `low` and `high` from the origin along their normal, m; by
+  /// one step of t the line gets `rate` along it.
+  void keep_between(double low, double high, double rate) {
+    if (rate == 0.0) {
+      if (low > 0.0 || high <= 0.0) leave = enter;
+      return;
+    }
+    const double one = low / rate, other = high / rate;
+    enter = std::max(enter, std::min(one, other));
+    leave = std::min(leave, std::max(one, other));
+  }
+  [[nodiscard]] std::vector<double> ends() const {
+    if (!(enter < leave)) return {};
+    return {enter, leave};
+  }
+};
+
 /// A vector whose dimension follows from the shape beside it, so that expressions convert to it.
 template <int Dim>
 using PointN = std::type_identity_t<VecN<Dim>>;
@@ -79,7 +108,7 @@ template <int Dim>
 [[nodiscard]] double signed_distance(const Cuboid<Dim>& s, const PointN<Dim>& point) {
   const VecN<Dim> half = s.size / 2;
   const VecN<Dim> beyond = (point - s.corner - half).cwiseAbs() - half;
-  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+  return distance_from_all(beyond);
 }
 template <int Dim>
 [[nodiscard]] double signed_distance(const Ball<Dim>& s, const PointN<Dim>& point) {
@@ -129,21 +158,12 @@ template <int Dim>
 template <int Dim>
 [[nodiscard]] std::vector<double> chords(const Cuboid<Dim>& s, const PointN<Dim>& origin,
                                          const PointN<Dim>& direction) {
-  double enter = -std::numeric_limits<double>::infinity();
-  double leave = std::numeric_limits<double>::infinity();
+  LinePart part;
   for (int axis = 0; axis < Dim; ++axis) {
-    const double low = s.corner[axis] - origin[axis];
-    const double high = s.corner[axis] + s.size[axis] - origin[axis];
-    if (direction[axis] == 0.0) {
-      if (low > 0.0 || high <= 0.0) return {};
-      continue;
-    }
-    const double one = low / direction[axis], other = high / direction[axis];
-    enter = std::max(enter, std::min(one, other));
-    leave = std::min(leave, std::max(one, other));
+    part.keep_between(s.corner[axis] - origin[axis], s.corner[axis] + s.size[axis] - origin[axis],
+                      direction[axis]);
   }
-  if (!(enter < leave)) return {};
-  return {enter, leave};
+  return part.ends();
 }
 
 }  // namespace sluice

@@ -42,20 +42,39 @@ struct Polygon {
   std::vector<VecN<2>> points;  ///< simple, not closed by repetition
 };
 
+/// Of space only: a right circular one, whose axis may point anywhere.
+struct Cylinder {
+  static constexpr int dimensions = 3;
+  VecN<3> base = VecN<3>::Zero();  ///< middle of one end
+  VecN<3> axis = VecN<3>::Zero();  ///< from there to the middle of the other end; not zero
+  double radius = 0.0;
+};
+
+/// Of space only: a polygon of the plane of x and y, drawn out along z.
+struct Prism {
+  static constexpr int dimensions = 3;
+  Polygon section;
+  double z = 0.0;      ///< where it begins
+  double depth = 0.0;  ///< along z
+};
+
 /// Every shape that there is in `Dim` dimensions.
 template <int Dim>
-struct ShapesOf {
-  using Any = std::variant<Cuboid<Dim>, Ball<Dim>, Ellipsoid<Dim>>;
-};
+struct ShapesOf;
 template <>
 struct ShapesOf<2> {
   using Any = std::variant<Rectangle, Circle, Ellipse, Polygon>;
+};
+template <>
+struct ShapesOf<3> {
+  using Any = std::variant<Cuboid<3>, Ball<3>, Ellipsoid<3>, Cylinder, Prism>;
 };
 template <int Dim>
 using ShapeN = typename ShapesOf<Dim>::Any;
 
 /// A shape of any number of dimensions. All of a scene are of the scene's.
-using Shape = std::variant<Rectangle, Circle, Ellipse, Polygon, Cuboid<3>, Ball<3>, Ellipsoid<3>>;
+using Shape = std::variant<Rectangle, Circle, Ellipse, Polygon, Cuboid<3>, Ball<3>, Ellipsoid<3>,
+                           Cylinder, Prism>;
 
 [[nodiscard]] inline int dimensions_of(const Shape& shape) {
   return std::visit([]<class S>(const S&) { return S::dimensions; }, shape);

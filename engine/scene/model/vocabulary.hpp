@@ -6,7 +6,17 @@
 namespace sluice {
 
 /// The alternatives of Shape, in its order.
-enum class ShapeKind { rectangle, circle, ellipse, polygon, box, sphere, ellipsoid };
+enum class ShapeKind {
+  rectangle,
+  circle,
+  ellipse,
+  polygon,
+  box,
+  sphere,
+  ellipsoid,
+  cylinder,
+  prism
+};
 
 [[nodiscard]] inline ShapeKind kind_of(const Shape& shape) {
   return static_cast<ShapeKind>(shape.index());
@@ -27,12 +37,16 @@ enum class ShapeKind { rectangle, circle, ellipse, polygon, box, sphere, ellipso
       return Ball<3>{};
     case ShapeKind::ellipsoid:
       return Ellipsoid<3>{};
+    case ShapeKind::cylinder:
+      return Cylinder{};
+    case ShapeKind::prism:
+      return Prism{};
   }
   return Rectangle{};
 }
 
 // The words that scenes write for each enumeration.
-inline constexpr Words<ShapeKind, 7> kShapeWords{{
+inline constexpr Words<ShapeKind, 9> kShapeWords{{
     {"rectangle", ShapeKind::rectangle, "in the plane, axis-aligned"},
     {"circle", ShapeKind::circle, "in the plane"},
     {"ellipse", ShapeKind::ellipse, "in the plane, axis-aligned"},
@@ -40,6 +54,9 @@ inline constexpr Words<ShapeKind, 7> kShapeWords{{
     {"box", ShapeKind::box, "in space, axis-aligned"},
     {"sphere", ShapeKind::sphere, "in space"},
     {"ellipsoid", ShapeKind::ellipsoid, "in space, axis-aligned"},
+    {"cylinder", ShapeKind::cylinder, "in space, right and circular, its axis in any direction"},
+    {"prism", ShapeKind::prism,
+     "in space: a polygon of the plane of x and y, without self-intersections, drawn out along z"},
 }};
 inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
     {"hydrostatic", InitialPressure::hydrostatic, "that of water at rest below the region's top"},

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "engine/scene/filling/initial.hpp"
 #include "engine/scene/filling/walls.hpp"
 #include "engine/scene/forecast/estimate.hpp"
+#include "engine/scene/geometry/geometry.hpp"
 #include "tests/scene/support.hpp"
 
 namespace sluice {
@@ -87,6 +89,72 @@ TEST(SpaceFilling, PacksWhatItsLatticeDoesNotFitToItsMass) {
     EXPECT_GT((place - Vec3(0.2, 0.15, 0.16)).norm(), 0.15 - 0.3 * 0.05) << place.transpose();
   }
   EXPECT_EQ(exact_estimate(scene).fluid_particles, made.state.particles.size());
+}
+
+json cylinder(const std::vector<double>& base, const std::vector<double>& axis, double radius) {
+  return {{"shape", "cylinder"}, {"base", base}, {"axis", axis}, {"radius", radius}};
+}
+
+/// Over the whole depth of the tank.
+json prism(const std::vector<std::vector<double>>& points) {
+  return {{"shape", "prism"}, {"points", points}, {"z", 0}, {"depth", 0.6}};
+}
+
+/// The particles at the start, none of which has its middle in a solid but by its packing.
+std::size_t count_beside_solids(const Scene& scene) {
+  const Particles p = create_particles(scene).state.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec place = p.position_of(i);
+    EXPECT_TRUE(scene.tank->interior().contains(place)) << place.transpose();
+    for (const Shape& solid : scene.obstacles) {
+      EXPECT_GT(signed_distance(solid, place), -0.3 * scene.method.spacing) << place.transpose();
+    }
+  }
+  return p.size();
+}
+
+TEST(SpaceFilling, KeepsWaterOutOfACylinder) {
+  const double cell = std::pow(0.05, 3);
+  for (const auto& [axis, radius] : {std::pair(std::vector<double>{0, 0.8, 0}, 0.1),
+                                     {std::vector<double>{0, 0, 0.3}, 0.1},
+                                     {std::vector<double>{0.05, 0.25, 0.1}, 0.1}}) {
+    json text = tank_scene(json::array({box({0, 0, 0}, {1, 0.4, 0.6})}));
+    const bool stands = axis[0] == 0 && axis[2] == 0;
+    text["obstacles"] =
+        json::array({cylinder({0.5, stands ? 0 : 0.1, stands ? 0.3 : 0.15}, axis, radius)});
+    const Scene scene = parsed(text);
+    const double in_water =
+        stands ? std::numbers::pi * 0.01 * 0.4 : measure(scene.obstacles.front());
+    const double wanted = (1 * 0.4 * 0.6 - in_water) / cell;
+    EXPECT_NEAR(static_cast<double>(count_beside_solids(scene)), wanted, 0.01 * wanted);
+  }
+}
+
+TEST(SpaceFilling, FillsAPrismBesideATriangularSill) {
+  json text = tank_scene(
+      json::array({prism({{0, 0}, {0.6, 0}, {0.6, 0.2}, {0.3, 0.2}, {0.3, 0.5}, {0, 0.5}}),
+                   cylinder({0.8, 0.5, 0.15}, {0, 0, 0.3}, 0.15)}));
+  text["obstacles"] = json::array({prism({{0.4, 0}, {0.6, 0}, {0.5, 0.15}})});
+  const Scene scene = parsed(text);
+  const double cell = std::pow(0.05, 3);
+  const double column = (0.6 * 0.2 + 0.3 * 0.3 - 0.5 * 0.2 * 0.15) * 0.6 / cell;
+  const double drop = std::numbers::pi * 0.15 * 0.15 * 0.3 / cell;
+  const double wanted = column + drop;
+  EXPECT_NEAR(static_cast<double>(count_beside_solids(scene)), wanted, 0.02 * wanted);
+  EXPECT_EQ(exact_estimate(scene).fluid_particles, create_particles(scene).state.particles.size());
+}
+
+TEST(SpaceFilling, OfAPrismOnTheLatticeIsThatOfBoxes) {
+  const Scene of_prism = parsed(tank_scene(
+      json::array({prism({{0, 0}, {0.6, 0}, {0.6, 0.2}, {0.3, 0.2}, {0.3, 0.5}, {0, 0.5}})})));
+  const InitialParticles made = create_particles(of_prism);
+  EXPECT_FALSE(made.packing);
+  EXPECT_EQ(made.state.particles.size(), (12U * 4U + 6U * 6U) * 12U);
+  // A solid block in the same place keeps as many dummy particles as a box of its size.
+  const std::vector<Shape> block{Prism{as_polygon({Vec2(0.2, 0), Vec2(0.3, 0.3)}), 0.1, 0.4}};
+  const std::vector<Shape> as_box{Cuboid<3>{Vec3(0.2, 0, 0.1), Vec3(0.3, 0.3, 0.4)}};
+  EXPECT_EQ(obstacle_walls(block, of_prism.method).size(),
+            obstacle_walls(as_box, of_prism.method).size());
 }
 
 TEST(SpaceFilling, PerturbsAllAxes) {
