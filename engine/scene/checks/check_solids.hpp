@@ -13,8 +13,8 @@ inline constexpr double kNarrowestSlit = 2.0;
 inline constexpr double kFewAcross = 10.0;
 
 /// Obstacles that fluid would pass through are problems; slits and few particles across are
-/// warnings. `scene` is resolved. Takes some milliseconds in the plane
-/// and about a second in space at most, whatever the spacing.
+/// warnings. `scene` is resolved. Takes some milliseconds in the plane and about a second
+/// in space at most, whatever the spacing.
 void check_solids(const Scene& scene, Problems& problems, Problems& warnings);
 
 /// Warns of sensors where no fluid can ever be. One on a wall or up to half a spacing in it is on
