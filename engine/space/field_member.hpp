@@ -12,7 +12,8 @@ inline constexpr int kNoAxis = -1;
 template <class Owner, class Value, class Axes = PerAxis<Value>>
 class FieldMember {
  public:
-  constexpr FieldMember(Value Owner::*scalar) : scalar_(scalar) {}
+  constexpr FieldMember(Value Owner::*scalar)  // NOLINT(google-explicit-constructor)
+      : scalar_(scalar) {}
   constexpr FieldMember(Axes Owner::*vector, int axis) : vector_(vector), axis_(axis) {}
 
   [[nodiscard]] constexpr int axis() const { return axis_; }

@@ -42,7 +42,7 @@ struct BoxN {
 
   /// The same box; an `Other` that says its dimensions has to be of as many.
   template <int Other>
-  operator BoxN<Other>() const {
+  operator BoxN<Other>() const {  // NOLINT(google-explicit-constructor)
     return {min, max};
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -49,6 +50,7 @@ namespace directions_in_space {
 template <>
 inline std::vector<VecN<3>> directions<3>(int count, double offset) {
   std::vector<VecN<3>> result;
+  result.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     result.push_back(directions_in_space::on_spiral(1.0 - (2.0 * k + 1.0) / count, k + offset));
   }
@@ -58,6 +60,7 @@ inline std::vector<VecN<3>> directions<3>(int count, double offset) {
 template <>
 inline std::vector<VecN<3>> half_of_directions<3>(int count) {
   std::vector<VecN<3>> result;
+  result.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     result.push_back(directions_in_space::on_spiral(1.0 - (k + 0.5) / count, k));
   }

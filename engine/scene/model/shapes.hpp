@@ -93,6 +93,7 @@ template <int Dim>
 template <int Dim>
 [[nodiscard]] std::vector<ShapeN<Dim>> shapes_as(const std::vector<Shape>& shapes) {
   std::vector<ShapeN<Dim>> result;
+  result.reserve(shapes.size());
   for (const Shape& shape : shapes) result.push_back(shape_as<Dim>(shape));
   return result;
 }

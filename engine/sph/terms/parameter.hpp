@@ -51,6 +51,9 @@ struct Number {
   Range range;
   std::string_view unit = "1";  ///< SI; "1": dimensionless
 };
+template <class Term, class Value>
+Number(std::string_view, Value Term::*, std::string_view, Range, std::string_view = "1")
+    -> Number<Term, Value>;
 
 /// A word out of a few.
 template <class Term, class Enum, std::size_t n>
@@ -60,5 +63,7 @@ struct Choice {
   std::string_view about;
   Words<Enum, n> words;
 };
+template <class Term, class Enum, std::size_t n>
+Choice(std::string_view, Enum Term::*, std::string_view, Words<Enum, n>) -> Choice<Term, Enum, n>;
 
 }  // namespace sluice
