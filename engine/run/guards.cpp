@@ -156,7 +156,7 @@ GuardLimits GuardLimits::for_method(const Method& method) {
   limits.bulk_density = 0.5 * Method::kDensityLeeway;
   // Fewer are never counted. That is seven times what the paper's support holds; wider supports get
   // the same margin.
-  const int dimensions = dimensions_of(method.gravity);
+  const int dimensions = method.dimensions();
   const double in_support = in_dimensions(
       dimensions, [&]<int Dim>() { return points_within<Dim>(method.support() / method.spacing); });
   limits.neighbours = std::max<double>(many_neighbours(dimensions), 7.0 * in_support);
@@ -170,7 +170,7 @@ double GuardLimits::most_of(double share, double particles) {
 
 double GuardLimits::crossing_time(const GuardBaselines& baselines) const {
   const double measure = baselines.initial_mass / method.reference_density;
-  return (dimensions_of(method.gravity) == kPlaneDim ? std::sqrt(measure) : std::cbrt(measure)) /
+  return (method.dimensions() == kPlaneDim ? std::sqrt(measure) : std::cbrt(measure)) /
          method.sound_speed;
 }
 

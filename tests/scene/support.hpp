@@ -58,6 +58,38 @@ inline nlohmann::json base_scene() {
   })");
 }
 
+/// A tank of 2 m x 1 m x 0.6 m with a column of 1 m x 0.5 m at its left wall, dx = 0.05 m.
+inline nlohmann::json space_scene() {
+  return nlohmann::json::parse(R"({
+    "name": "space",
+    "tank": {"width": 2, "height": 1, "depth": 0.6},
+    "fluid": [{"shape": "box", "corner": [0, 0, 0], "size": [1, 0.5, 0.6]}],
+    "gravity": [0, -9.81, 0],
+    "resolution": {"spacing": 0.05},
+    "end_time": 1
+  })");
+}
+
+inline nlohmann::json box(const std::vector<double>& corner, const std::vector<double>& size) {
+  return {{"shape", "box"}, {"corner", corner}, {"size", size}};
+}
+
+inline nlohmann::json cylinder(const std::vector<double>& base, const std::vector<double>& axis,
+                               double radius) {
+  return {{"shape", "cylinder"}, {"base", base}, {"axis", axis}, {"radius", radius}};
+}
+
+/// Over the whole depth of the tank of space_scene().
+inline nlohmann::json prism(const std::vector<std::vector<double>>& points) {
+  return {{"shape", "prism"}, {"points", points}, {"z", 0}, {"depth", 0.6}};
+}
+
+/// SPHERIC test 2, whose measures have no spacing in common: to pack its many particles takes
+/// seconds, and a sanitizer a quarter of an hour.
+inline bool takes_long_to_pack(const std::filesystem::path& example) {
+  return example.stem().string().starts_with("spheric2");
+}
+
 /// A free region with dx = 0.05 m, neither walls nor gravity, c = 20 m/s.
 inline nlohmann::json free_scene(nlohmann::json region) {
   nlohmann::json scene = base_scene();

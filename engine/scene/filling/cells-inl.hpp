@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 
 #include "engine/scene/filling/cells.hpp"
 #include "engine/scene/geometry/geometry.hpp"
@@ -50,10 +51,9 @@ inline std::vector<double> crossings(const Polygon& s, const VecN<2>& place) {
   return result;
 }
 
-inline std::vector<double> crossings(const Cylinder& s, const VecN<3>& place) {
-  return chords(s, VecN<3>(0.0, place.y(), place.z()), VecN<3>::Unit(0));
-}
-inline std::vector<double> crossings(const Prism& s, const VecN<3>& place) {
+template <class S>
+requires std::is_same_v<S, Cylinder> || std::is_same_v<S, Prism> std::vector<double> crossings(
+    const S& s, const VecN<3>& place) {
   return chords(s, VecN<3>(0.0, place.y(), place.z()), VecN<3>::Unit(0));
 }
 

@@ -22,7 +22,7 @@ struct SchemeNumbers {
   double two_nu;  // of the physical viscosity, which alone makes a scheme depend on c and h
 
   explicit SchemeNumbers(const Method& m)
-      : dimensions(dimensions_of(m.gravity)),
+      : dimensions(m.dimensions()),
         integrator(m.integrator),
         kernel(m.kernel),
         spacing(m.spacing / m.smoothing_length),
@@ -38,9 +38,8 @@ struct Kept {
   std::shared_ptr<const SchemeAnalysis> analysis;
 };
 
-using AnyLattice = std::variant<LatticeStabilityN<2>, LatticeStabilityN<3>>;
 AnyLattice lattice_of(const Method& method) {
-  return in_dimensions(dimensions_of(method.gravity), [&]<int Dim>() -> AnyLattice {
+  return in_dimensions(method.dimensions(), [&]<int Dim>() -> AnyLattice {
     return LatticeStabilityN<Dim>(method_as<Dim>(method), Surface::free);
   });
 }
@@ -62,7 +61,7 @@ double SchemeAnalysis::spectral_radius(double courant) const {
 CourantLimits SchemeAnalysis::limits() const {
   const std::scoped_lock lock(mutex_);
   if (!limits_) {
-    limits_ = in_dimensions(dimensions_of(method_.gravity), [&]<int Dim>() {
+    limits_ = in_dimensions(method_.dimensions(), [&]<int Dim>() {
       return courant_limits(method_as<Dim>(method_), Surface::free);
     });
   }

@@ -10,6 +10,8 @@
 
 namespace sluice {
 
+using AnyLattice = std::variant<LatticeStabilityN<2>, LatticeStabilityN<3>>;
+
 /// Von Neumann analysis of one scheme with a free surface, each answer computed once: limits take
 /// some ten milliseconds. Thread-safe.
 class SchemeAnalysis {
@@ -23,7 +25,7 @@ class SchemeAnalysis {
 
  private:
   Method method_;
-  std::variant<LatticeStabilityN<2>, LatticeStabilityN<3>> lattice_;
+  AnyLattice lattice_;
   mutable std::mutex mutex_;
   mutable std::map<double, double> radii_;  ///< by Courant number
   mutable std::optional<CourantLimits> limits_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <variant>
 
 #include "engine/scene/format/describe_ranges.hpp"
@@ -11,14 +12,22 @@ namespace sluice {
 
 // Part of the scene format (describe.hpp): shapes, fluid, tank, gate.
 
+/// A place in a scene, or a way from one place to another.
+template <class Archive, class Place>
+void describe_place(Archive& a, std::string_view key, Place& place, std::string_view about) {
+  a.vector(key, place, {.about = about, .unit = "m", .range = kCoordinate, .need = Need::required});
+}
+
+template <class Archive>
+void describe_length(Archive& a, std::string_view key, double& length, std::string_view about) {
+  a.number(key, length, {.about = about, .unit = "m", .range = kLength, .need = Need::required});
+}
+
 template <class Archive, int Dim>
 void describe(Archive& a, Cuboid<Dim>& shape) {
   constexpr bool kPlane = Dim == 2;
-  a.vector("corner", shape.corner,
-           {.about = kPlane ? "lower left corner" : "corner of lowest coordinates",
-            .unit = "m",
-            .range = kCoordinate,
-            .need = Need::required});
+  describe_place(a, "corner", shape.corner,
+                 kPlane ? "lower left corner" : "corner of lowest coordinates");
   a.vector("size", shape.size,
            {.about = kPlane ? "width and height" : "width, height and depth: along x, y and z",
             .unit = "m",
@@ -28,16 +37,13 @@ void describe(Archive& a, Cuboid<Dim>& shape) {
 
 template <class Archive, int Dim>
 void describe(Archive& a, Ball<Dim>& shape) {
-  a.vector("center", shape.center,
-           {.about = "center", .unit = "m", .range = kCoordinate, .need = Need::required});
-  a.number("radius", shape.radius,
-           {.about = "radius", .unit = "m", .range = kLength, .need = Need::required});
+  describe_place(a, "center", shape.center, "center");
+  describe_length(a, "radius", shape.radius, "radius");
 }
 
 template <class Archive, int Dim>
 void describe(Archive& a, Ellipsoid<Dim>& shape) {
-  a.vector("center", shape.center,
-           {.about = "center", .unit = "m", .range = kCoordinate, .need = Need::required});
+  describe_place(a, "center", shape.center, "center");
   a.vector("semi_axes", shape.semi_axes,
            {.about = Dim == 2 ? "half the width and half the height"
                               : "half the width, half the height and half the depth",
@@ -58,16 +64,10 @@ void describe(Archive& a, Polygon& shape) {
 
 template <class Archive>
 void describe(Archive& a, Cylinder& shape) {
-  a.vector(
-      "base", shape.base,
-      {.about = "middle of one end", .unit = "m", .range = kCoordinate, .need = Need::required});
-  a.vector("axis", shape.axis,
-           {.about = "from there to the middle of the other end; its length is the height",
-            .unit = "m",
-            .range = kCoordinate,
-            .need = Need::required});
-  a.number("radius", shape.radius,
-           {.about = "radius", .unit = "m", .range = kLength, .need = Need::required});
+  describe_place(a, "base", shape.base, "middle of one end");
+  describe_place(a, "axis", shape.axis,
+                 "from there to the middle of the other end; its length is the height");
+  describe_length(a, "radius", shape.radius, "radius");
 }
 
 template <class Archive>
@@ -75,11 +75,7 @@ void describe(Archive& a, Prism& shape) {
   describe(a, shape.section);
   a.number("z", shape.z,
            {.about = "where it begins", .unit = "m", .range = kCoordinate, .need = Need::required});
-  a.number("depth", shape.depth,
-           {.about = "how far it goes on along z",
-            .unit = "m",
-            .range = kLength,
-            .need = Need::required});
+  describe_length(a, "depth", shape.depth, "how far it goes on along z");
 }
 
 /// A shape, and in the same object the keys that `more` describes.

@@ -21,17 +21,6 @@ template <int Dim>
 constexpr int kWays = Dim == 2 ? 8 : 32;  // across a solid
 constexpr double kStepsPerSpacing = 8;
 
-/// The inside of a gate, deeper than the allowed depth.
-template <int Dim>
-struct GateInside {
-  BoxN<Dim> closed;    ///< at t = 0
-  double speed = 0.0;  ///< upwards, of its lower edge, m/s
-
-  [[nodiscard]] bool contains(const VecN<Dim>& place, double time) const {
-    return closed.contains(place) && place[kUpAxis] >= closed.min[kUpAxis] + speed * time;
-  }
-};
-
 void add_tank(const Tank& tank, double depth, FlowDomain& domain) {
   domain.room = grown(tank.interior(), depth);
   if (!tank.open_top) return;
@@ -100,14 +89,16 @@ class Obstacles {
 
 template <int Dim>
 std::function<bool(const Vec&, double)> in_solids_of(const Scene& scene) {
-  std::optional<GateInside<Dim>> gate;
-  if (const auto& moving = scene.domain.gate) {
-    gate = {grown(BoxN<Dim>(moving->place), -scene.method.spacing), moving->speed};
+  std::optional<GateMotionN<Dim>> inside_gate;
+  if (const auto& gate = scene.domain.gate) {
+    inside_gate = {grown(BoxN<Dim>(gate->place), -scene.method.spacing), gate->speed};
   }
-  return [obstacles = std::make_shared<const Obstacles<Dim>>(scene), gate](const Vec& any,
-                                                                           double time) {
+  return [obstacles = std::make_shared<const Obstacles<Dim>>(scene), inside_gate](const Vec& any,
+                                                                                  double time) {
     const VecN<Dim> place = any;
-    return (gate && gate->contains(place, time)) || obstacles->hold_deep(place);
+    const bool in_gate =
+        inside_gate && inside_gate->place.contains(place) && !inside_gate->has_passed(place, time);
+    return in_gate || obstacles->hold_deep(place);
   };
 }
 

@@ -23,8 +23,7 @@ TEST(SceneFixtures, ValidOnesAreAcceptedAndMakeParticles) {
     const ParseResult result = parse_scene(testing::read_text(path));
     EXPECT_TRUE(result.problems.empty()) << path << "\n" << testing::list(result.problems);
     ASSERT_TRUE(result.scene) << path;
-    // To pack SPHERIC test 2 takes seconds, and a sanitizer a quarter of an hour.
-    if (path.stem().string().starts_with("spheric2")) continue;
+    if (testing::takes_long_to_pack(path)) continue;
     EXPECT_GT(create_particles(*result.scene).state.particles.size(), 0U) << path;
   }
 }
@@ -51,8 +50,7 @@ TEST(SceneFixtures, ExamplesAreAcceptedAndMakeParticles) {
     const ParseResult result = parse_scene(testing::read_text(path));
     ASSERT_TRUE(result.scene) << path << "\n" << testing::list(result.problems);
     EXPECT_EQ(result.scene->name, path.stem()) << "an example bears the name of its file";
-    // To pack SPHERIC test 2 takes seconds, and a sanitizer a quarter of an hour.
-    if (path.stem().string().starts_with("spheric2")) continue;
+    if (testing::takes_long_to_pack(path)) continue;
     EXPECT_GT(create_particles(*result.scene).state.particles.size(), 0U) << path;
   }
 }

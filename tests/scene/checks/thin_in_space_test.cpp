@@ -14,38 +14,25 @@ namespace sluice {
 namespace {
 
 using nlohmann::json;
+using testing::cylinder;
 using ::testing::HasSubstr;
 using testing::message_at;
 using testing::parse;
+using testing::prism;
 
 /// A tank of 2 m x 1 m x 0.6 m with water at its left, dx = 0.05 m, and one obstacle.
 json in_tank(const json& obstacle) {
-  json scene = json::parse(R"({
-    "name": "space",
-    "tank": {"width": 2, "height": 1, "depth": 0.6},
-    "fluid": [{"shape": "box", "corner": [0, 0, 0], "size": [0.5, 0.5, 0.6]}],
-    "gravity": [0, -9.81, 0],
-    "resolution": {"spacing": 0.05},
-    "end_time": 1
-  })");
+  json scene = testing::space_scene();
+  scene["fluid"] = {testing::box({0, 0, 0}, {0.5, 0.5, 0.6})};
   scene["obstacles"] = {obstacle};
   return scene;
-}
-
-json cylinder_of(const std::vector<double>& base, const std::vector<double>& axis, double radius) {
-  return {{"shape", "cylinder"}, {"base", base}, {"axis", axis}, {"radius", radius}};
-}
-
-/// Over the whole depth of the tank.
-json prism_of(const std::vector<std::vector<double>>& points) {
-  return {{"shape", "prism"}, {"points", points}, {"z", 0}, {"depth", 0.6}};
 }
 
 /// A wall across the tank, upright or leaning, so thick in spacings.
 json leaning_wall(double spacings, double degrees) {
   const double lean = std::tan(degrees * std::numbers::pi / 180);
   const double along = spacings * 0.05 / std::cos(degrees * std::numbers::pi / 180);
-  return prism_of({{1, 0}, {1 + along, 0}, {1 + along + 0.8 * lean, 0.8}, {1 + 0.8 * lean, 0.8}});
+  return prism({{1, 0}, {1 + along, 0}, {1 + along + 0.8 * lean, 0.8}, {1 + 0.8 * lean, 0.8}});
 }
 
 std::string problem_with(const json& obstacle) {
@@ -70,7 +57,7 @@ TEST(ThinInSpace, PrismsAreRefusedBelowTwoSpacings) {
 TEST(ThinInSpace, PrismsAreRefusedBelowTwoSpacingsOfDepth) {
   const std::vector<std::vector<double>> square{{0.8, 0}, {1.6, 0}, {1.6, 0.9}, {0.8, 0.9}};
   for (const double spacings : {1.5, 2.0}) {
-    json plate = prism_of(square);
+    json plate = prism(square);
     plate["z"] = 0.25;
     plate["depth"] = spacings * 0.05;
     EXPECT_EQ(problem_with(plate).empty(), spacings >= 2.0) << spacings;
@@ -79,21 +66,20 @@ TEST(ThinInSpace, PrismsAreRefusedBelowTwoSpacingsOfDepth) {
 
 TEST(ThinInSpace, PrismsAreFineWhereTheyTaper) {
   const std::vector<std::vector<double>> sill{{1, 0}, {1.6, 0}, {1.3, 0.3}};
-  EXPECT_EQ(problem_with(prism_of(sill)), "");
-  EXPECT_EQ(warning_of_one(prism_of(sill)), "");
+  EXPECT_EQ(problem_with(prism(sill)), "");
+  EXPECT_EQ(warning_of_one(prism(sill)), "");
   const std::vector<std::vector<double>> ramp{{0.8, 0}, {1.9, 0}, {1.9, 0.25}};
-  EXPECT_EQ(problem_with(prism_of(ramp)), "");
-  EXPECT_EQ(warning_of_one(prism_of(ramp)), "") << "what it tapers on is the floor";
+  EXPECT_EQ(problem_with(prism(ramp)), "");
+  EXPECT_EQ(warning_of_one(prism(ramp)), "") << "what it tapers on is the floor";
 }
 
 TEST(ThinInSpace, PrismsAreRefusedWhereATipTouchesTheFloor) {
-  EXPECT_THAT(problem_with(prism_of({{1.3, 0}, {1.55, 1}, {1.05, 1}})),
-              HasSubstr("does not mend it"));
+  EXPECT_THAT(problem_with(prism({{1.3, 0}, {1.55, 1}, {1.05, 1}})), HasSubstr("does not mend it"));
 }
 
 TEST(ThinInSpace, PrismsAreRefusedForTheirNecks) {
   const auto hourglass = [](double neck) {
-    return prism_of(
+    return prism(
         {{1, 0}, {1.6, 0}, {1.3 + neck / 2, 0.3}, {1.6, 0.9}, {1, 0.9}, {1.3 - neck / 2, 0.3}});
   };
   EXPECT_NE(problem_with(hourglass(0.02)), "");
@@ -106,7 +92,7 @@ TEST(ThinInSpace, CylindersAreRefusedWhereTheyAreFlat) {
     const auto disc = [&](double spacings) {
       const Vec3 axis = spacings * 0.05 * way.normalized();
       const Vec3 base = middle - axis / 2;
-      return cylinder_of({base.x(), base.y(), base.z()}, {axis.x(), axis.y(), axis.z()}, 0.28);
+      return cylinder({base.x(), base.y(), base.z()}, {axis.x(), axis.y(), axis.z()}, 0.28);
     };
     EXPECT_THAT(problem_with(disc(1.25)), HasSubstr("is only 0.0625 m, 1.2 spacings"));
     EXPECT_EQ(problem_with(disc(2.0)), "");
@@ -114,10 +100,10 @@ TEST(ThinInSpace, CylindersAreRefusedWhereTheyAreFlat) {
 }
 
 TEST(ThinInSpace, CylindersAreFineAsPillarsThatFluidFlowsRound) {
-  EXPECT_EQ(problem_with(cylinder_of({1, 0, 0.3}, {0, 1, 0}, 0.04)), "");
-  EXPECT_THAT(warning_of_one(cylinder_of({1, 0, 0.3}, {0, 1, 0}, 0.2)),
+  EXPECT_EQ(problem_with(cylinder({1, 0, 0.3}, {0, 1, 0}, 0.04)), "");
+  EXPECT_THAT(warning_of_one(cylinder({1, 0, 0.3}, {0, 1, 0}, 0.2)),
               HasSubstr("is 0.4 m, 8 spacings"));
-  json fine = in_tank(cylinder_of({1, 0, 0.3}, {0, 1, 0}, 0.2));
+  json fine = in_tank(cylinder({1, 0, 0.3}, {0, 1, 0}, 0.2));
   fine["resolution"]["spacing"] = 0.04;
   EXPECT_TRUE(parse(fine).warnings.empty());
 }

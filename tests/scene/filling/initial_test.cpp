@@ -327,8 +327,7 @@ TEST(StartPlan, KeepsEveryExampleOnItsLatticeAndCountsItsParticles) {
   for (const auto& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
     const Scene scene = parsed(json::parse(testing::read_text(path)));
     const StartPlan plan = start_plan(scene);
-    // Its measures have no spacing in common, and to pack it takes a sanitizer too long.
-    if (scene.name.starts_with("spheric2")) {
+    if (testing::takes_long_to_pack(path)) {
       EXPECT_TRUE(plan.packed) << path;
       continue;
     }

@@ -16,23 +16,18 @@ namespace sluice {
 namespace {
 
 using nlohmann::json;
+using testing::box;
+using testing::cylinder;
 using testing::parsed;
+using testing::prism;
 
 /// A tank of 1 m x 0.8 m x 0.6 m, dx = 0.05 m, filled from the left.
 json tank_scene(const json& fluid) {
-  json scene = json::parse(R"({
-    "name": "space",
-    "tank": {"width": 1, "height": 0.8, "depth": 0.6},
-    "gravity": [0, -9.81, 0],
-    "resolution": {"spacing": 0.05},
-    "end_time": 1
-  })");
+  json scene = testing::space_scene();
+  scene["tank"]["width"] = 1;
+  scene["tank"]["height"] = 0.8;
   scene["fluid"] = fluid;
   return scene;
-}
-
-json box(const std::vector<double>& corner, const std::vector<double>& size) {
-  return {{"shape", "box"}, {"corner", corner}, {"size", size}};
 }
 
 TEST(SpaceFilling, PutsAParticleInEachCellOfABoxWithItsHydrostaticPressure) {
@@ -88,15 +83,6 @@ TEST(SpaceFilling, PacksWhatItsLatticeDoesNotFitToItsMass) {
     EXPECT_GT((place - Vec3(0.2, 0.15, 0.16)).norm(), 0.15 - 0.3 * 0.05) << place.transpose();
   }
   EXPECT_EQ(exact_estimate(scene).fluid_particles, made.state.particles.size());
-}
-
-json cylinder(const std::vector<double>& base, const std::vector<double>& axis, double radius) {
-  return {{"shape", "cylinder"}, {"base", base}, {"axis", axis}, {"radius", radius}};
-}
-
-/// Over the whole depth of the tank.
-json prism(const std::vector<std::vector<double>>& points) {
-  return {{"shape", "prism"}, {"points", points}, {"z", 0}, {"depth", 0.6}};
 }
 
 /// The particles at the start, none of which has its middle in a solid but by its packing.
