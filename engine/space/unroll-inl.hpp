@@ -13,6 +13,11 @@
 #include <cstddef>
 #include <utility>
 
+/// HWY_ATTR for a lambda that is part of a loop: one that stayed a call would take its vectors
+/// through memory, and g++ decides by the size of all that a file holds.
+#undef SLUICE_ATTR
+#define SLUICE_ATTR HWY_ATTR __attribute__((always_inline))
+
 HWY_BEFORE_NAMESPACE();
 namespace sluice::HWY_NAMESPACE {
 
@@ -20,14 +25,17 @@ namespace sluice::HWY_NAMESPACE {
 /// components of one, stays in registers.
 template <int kCount, class F>
 HWY_INLINE void unroll(const F& f) {
-  [&]<std::size_t... k>(std::index_sequence<k...>) HWY_ATTR { (f(k), ...); }
+  [&]<std::size_t... k>(std::index_sequence<k...>) SLUICE_ATTR { (f(k), ...); }
   (std::make_index_sequence<kCount>());
 }
 
 /// The array of f(0), ... f(kCount - 1).
 template <int kCount, class F>
 HWY_INLINE auto array_of(const F& f) {
-  return [&]<std::size_t... k>(std::index_sequence<k...>) HWY_ATTR { return std::array{f(k)...}; }
+  using Each = decltype(f(std::size_t{}));
+  return [&]<std::size_t... k>(std::index_sequence<k...>) SLUICE_ATTR {
+    return std::array<Each, kCount>{f(k)...};
+  }
   (std::make_index_sequence<kCount>());
 }
 

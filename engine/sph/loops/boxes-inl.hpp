@@ -27,15 +27,25 @@ HWY_INLINE auto clusters_within(D d, const BoxesView<Dim>& boxes, std::uint32_t 
   return hn::And(beside, hn::FirstN(d, end - j));
 }
 
-/// Writes first, first + 1, ... for the lanes of the mask, and a vector's worth beyond; returns how
-/// many they are.
+/// Writes first + k for the lanes k of the mask, and a vector's worth beyond; returns how many they
+/// are.
 template <class D, class M>
-HWY_INLINE std::size_t list_slots(D, M mask, std::uint32_t first, std::uint32_t* HWY_RESTRICT out) {
+HWY_INLINE std::size_t list_slots(D d, M mask, std::uint32_t first,
+                                  std::uint32_t* HWY_RESTRICT out) {
   const hn::RebindToUnsigned<D> d_number;
-  const auto chosen = hn::RebindMask(d_number, mask);
-  const auto numbers = hn::Iota(d_number, 0) + hn::Set(d_number, first);
-  hn::StoreU(hn::Compress(numbers, chosen), d_number, out);
-  return hn::CountTrue(d_number, chosen);
+  const auto from = hn::Set(d_number, first);
+  if constexpr (hn::MaxLanes(D()) == 8) {
+    // In place of hn::Compress, whose table for AVX2 g++ copies at every call.
+    std::uint8_t bits[8];
+    hn::StoreMaskBits(d, mask, bits);
+    const hn::Rebind<std::uint8_t, D> d_byte;
+    const auto numbers = hn::LoadU(d_byte, kBitsOfByte[bits[0]].data());
+    hn::StoreU(hn::PromoteTo(d_number, numbers) + from, d_number, out);
+  } else {
+    const auto numbers = hn::Iota(d_number, 0) + from;
+    hn::StoreU(hn::Compress(numbers, hn::RebindMask(d_number, mask)), d_number, out);
+  }
+  return hn::CountTrue(d, mask);
 }
 
 }  // namespace sluice::HWY_NAMESPACE

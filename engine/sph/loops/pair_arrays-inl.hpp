@@ -34,76 +34,90 @@ void gather(std::span<const Contribution> contributions, const T* const* sums_of
   }
 }
 
-/// to = (from - origin) * scale for the slots [begin, end)
-template <class D, typename T>
-HWY_INLINE void write_relative(D d, std::size_t begin, std::size_t end, T* HWY_RESTRICT to,
-                               const double* HWY_RESTRICT from, double origin, double scale) {
-  const hn::Rebind<T, D> d_out;
-  for (std::size_t s = begin; s < end; s += hn::Lanes(d)) {
-    const auto value = (hn::LoadU(d, from + s) - hn::Set(d, origin)) * hn::Set(d, scale);
-    if constexpr (std::is_same_v<T, double>) {
-      hn::StoreU(value, d_out, to + s);
-    } else {
-      hn::StoreU(hn::DemoteTo(d_out, value), d_out, to + s);
-    }
+/// Calls body(slot) for the particles of a span, so that a vector of the state belongs to one
+/// cluster.
+template <int Dim, class Body>
+HWY_INLINE void for_each_vector(const ParticleSpan<Dim>& p, const Body& body) {
+  for (std::size_t s = p.begin; s < p.end; s += hn::Lanes(State())) body(s);
+}
+
+/// A state in the type of the sums.
+template <typename T>
+HWY_INLINE auto rounded(StateVec value) {
+  if constexpr (std::is_same_v<T, double>) {
+    return value;
+  } else {
+    return hn::DemoteTo(hn::Rebind<T, State>(), value);
   }
 }
 
 template <typename T, int Dim>
 void write_places(const ParticleSpan<Dim>& p, const PairScales<Dim>& k, PairArrays<T, Dim>& out) {
-  const auto write = [&](auto d, std::size_t begin, std::size_t end) HWY_ATTR {
-    const VecN<Dim> origin = k.grid->origin_cell_center(k.origin_cell[begin / kCluster]);
+  using Fields = PairFields<Dim>;
+  const State d;
+  const hn::Rebind<T, State> d_out;
+  VecN<Dim> origin = k.grid->origin_cell_center(k.origin_cell[p.begin / kCluster]);
+  const bool one_origin = k.grid->has_one_origin_cell();
+  const bool keeps_diffused = out.keeps_diffused();
+  for_each_vector(p, [&](std::size_t s) HWY_ATTR {
+    if (HWY_UNLIKELY(!one_origin)) origin = k.grid->origin_cell_center(k.origin_cell[s / kCluster]);
+    T* HWY_RESTRICT to = out.cluster(Fields::position, s);
+    const auto x = load_axes<Dim>(d, p.position, s);
     unroll<Dim>([&](auto axis) HWY_ATTR {
-      write_relative(d, begin, end, out.position[axis].data(), p.position[axis],
-                     origin[static_cast<Eigen::Index>(axis)], k.inverse_length);
+      const StateVec from = hn::Set(d, origin[static_cast<Eigen::Index>(axis)]);
+      const StateVec value = (x[axis] - from) * hn::Set(d, k.inverse_length);
+      hn::StoreU(rounded<T>(value), d_out, to + Fields::begin(axis));
     });
-  };
-  if (k.grid->has_one_origin_cell()) {
-    write(hn::ScalableTag<double>(), p.begin, p.end);
-  } else {
-    for (std::size_t s = p.begin; s < p.end; s += kCluster) write(State(), s, s + kCluster);
-  }
-  if (out.diffused.size() == 0) return;
-  T* HWY_RESTRICT diffused = out.diffused.data();
-  for (std::size_t i = p.begin; i < p.end; ++i) {
-    double hydrostatic = k.hydrostatic[0] * p.position[0][i];
-    for (int axis = 1; axis < Dim; ++axis) {
-      hydrostatic += k.hydrostatic[axis] * p.position[static_cast<std::size_t>(axis)][i];
+    if (!keeps_diffused) return;
+    StateVec hydrostatic = hn::Set(d, k.hydrostatic[0]) * x[0];
+    for (std::size_t axis = 1; axis < Dim; ++axis) {
+      hydrostatic =
+          hydrostatic + hn::Set(d, k.hydrostatic[static_cast<Eigen::Index>(axis)]) * x[axis];
     }
-    diffused[i] = static_cast<T>(p.density_excess[i] * k.inverse_density -
-                                 (hydrostatic - k.hydrostatic_middle));
-  }
+    const StateVec excess = hn::LoadU(d, p.density_excess + s) * hn::Set(d, k.inverse_density);
+    const StateVec psi = excess - (hydrostatic - hn::Set(d, k.hydrostatic_middle));
+    hn::StoreU(rounded<T>(psi), d_out, to + Fields::begin(Fields::diffused));
+  });
 }
 
 template <typename T, int Dim>
 void write_velocities(const ParticleSpan<Dim>& p, const PairScales<Dim>& k,
                       PairArrays<T, Dim>& out) {
-  const auto scaled = [&](T* HWY_RESTRICT to, const double* HWY_RESTRICT v) HWY_ATTR {
-    for (std::size_t s = p.begin; s < p.end; ++s) to[s] = static_cast<T>(v[s] * k.inverse_speed);
-  };
-  unroll<Dim>([&](auto axis) HWY_ATTR { scaled(out.velocity[axis].data(), p.velocity[axis]); });
+  using Fields = PairFields<Dim>;
+  const State d;
+  const hn::Rebind<T, State> d_out;
+  for_each_vector(p, [&](std::size_t s) HWY_ATTR {
+    T* HWY_RESTRICT to = out.cluster(Fields::velocity, s);
+    const auto v = load_axes<Dim>(d, p.velocity, s);
+    unroll<Dim>([&](auto axis) HWY_ATTR {
+      hn::StoreU(rounded<T>(v[axis] * hn::Set(d, k.inverse_speed)), d_out,
+                 to + Fields::begin(axis));
+    });
+  });
 }
 
 template <typename T, int Dim>
 void write_densities(const ParticleSpan<Dim>& p, const PairScales<Dim>& k,
                      PairArrays<T, Dim>& out) {
-  T* HWY_RESTRICT excess = out.excess.data();
-  T* HWY_RESTRICT volume = out.volume.data();
-  T* HWY_RESTRICT pressure_term = out.pressure_term.data();
-  for (std::size_t i = p.begin; i < p.end; ++i) {
-    const T s = static_cast<T>(p.density_excess[i] * k.inverse_density);
-    const T v = T{1} / (T{1} + s);
-    excess[i] = s;
-    volume[i] = v;
-    pressure_term[i] = s * v * v;
-  }
+  using Fields = PairFields<Dim>;
+  const State d;
+  const hn::Rebind<T, State> d_out;
+  const auto one = hn::Set(d_out, T{1});
+  for_each_vector(p, [&](std::size_t s) HWY_ATTR {
+    T* HWY_RESTRICT to = out.cluster(0, s);
+    const StateVec density = hn::LoadU(d, p.density_excess + s) * hn::Set(d, k.inverse_density);
+    const auto excess = rounded<T>(density);
+    const auto volume = one / (one + excess);
+    hn::StoreU(excess, d_out, to + Fields::begin(Fields::excess));
+    hn::StoreU(volume, d_out, to + Fields::begin(Fields::volume));
+    hn::StoreU(excess * volume * volume, d_out, to + Fields::begin(Fields::pressure_term));
+  });
 }
 
 template <typename T, int Dim>
 void compare_with_paths(const ParticleSpan<Dim>& p, const PairArrays<T, Dim>& now,
-                        const ListPathsView<T, Dim>& paths, const Skin<T>& skin, T elapsed,
-                        Motion& out) {
-  using D = hn::ScalableTag<T>;
+                        const ListPathsView<T, Dim>& paths, T elapsed, Motion& out) {
+  using D = hn::CappedTag<T, kCluster>;
   const D d;
   const auto t = hn::Set(d, elapsed);
   auto expired = hn::FirstN(d, 0);
@@ -111,10 +125,11 @@ void compare_with_paths(const ParticleSpan<Dim>& p, const PairArrays<T, Dim>& no
     const auto x = load_axes<Dim>(d, paths.position, s);
     const auto v = load_axes<Dim>(d, paths.velocity, s);
     const auto off = array_of<Dim>([&](auto axis) HWY_ATTR {
-      return hn::NegMulAdd(v[axis], t, hn::LoadU(d, now.position[axis].data() + s) - x[axis]);
+      const auto place = hn::LoadU(d, now.cluster(PairFields<Dim>::position + axis, s));
+      return hn::NegMulAdd(v[axis], t, place - x[axis]);
     });
     const auto limit =
-        hn::MulAdd(hn::Set(d, skin.per_speed), sum_of_sizes(v), hn::Set(d, skin.least));
+        hn::MulAdd(hn::Set(d, paths.skin.per_speed), sum_of_sizes(v), hn::Set(d, paths.skin.least));
     const auto used = hn::Abs(x[0]) < hn::Set(d, static_cast<T>(kNowhere));
     expired = hn::Or(expired, hn::And(used, dot(off, off) > limit * limit));
   }

@@ -3,8 +3,9 @@
 // A cluster is four particles. Each sum runs one cluster i against a list of clusters j. A vector
 // is seen as blocks of 128 bits: every block holds the same particles j (one broadcast load) and
 // belongs to its own particle i, so that no lane is a gather and one reduction at the end serves
-// all i of the vector. With AVX-512 in single precision a vector is all 4 x 4 pairs of two
-// clusters.
+// all i of the vector. With AVX-512 a vector holds all four particles i, elsewhere some vectors do,
+// side by side: they read the list and the particles j once, and while one waits for a result
+// the other goes on. Their sums have the order that AVX-512 gives them.
 
 #if defined(SLUICE_PAIR_LOOP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SLUICE_PAIR_LOOP_INL
@@ -35,6 +36,7 @@ struct Blocks {
   static constexpr std::size_t lanes = hn::MaxLanes(D());
   static constexpr std::size_t j_lanes = 16 / sizeof(T);        ///< particles j in a block
   static constexpr std::size_t i_count = lanes / j_lanes;       ///< particles i in a vector
+  static constexpr std::size_t i_vectors = kCluster / i_count;  ///< vectors that hold a cluster i
   static constexpr std::size_t j_vectors = kCluster / j_lanes;  ///< vectors that hold a cluster j
 };
 
@@ -59,6 +61,10 @@ template <typename T>
 HWY_INLINE auto load_j(const T* HWY_RESTRICT from) {
   return hn::LoadDup128(typename Blocks<T>::D(), from);
 }
+
+/// One of each vector of a cluster i.
+template <typename T, class Each>
+using OfI = std::array<Each, Blocks<T>::i_vectors>;
 
 /// Adds up the lanes of each block: one value per particle i.
 template <typename T, class V>
@@ -123,48 +129,90 @@ HWY_INLINE void subtract_from_j(T* HWY_RESTRICT to, const std::array<V, kCount>&
     hn::StoreU(hn::LoadU(half, to) - sums, half, to);
   } else {
     unroll<kCount>([&](auto block)
-                       HWY_ATTR { subtract_from_j(to + kCluster * block, blocks[block]); });
+                       SLUICE_ATTR { subtract_from_j(to + kCluster * block, blocks[block]); });
   }
 }
 
-/// The same particles i of several arrays, one for each axis.
-template <int Dim, typename T>
-HWY_INLINE auto load_i(const std::array<const T*, Dim>& from, std::size_t slot) {
-  return array_of<Dim>([&](auto axis) HWY_ATTR { return load_i(from[axis] + slot); });
+/// Adds up the vectors of a cluster i, in the order in which add_blocks goes on.
+template <class V, std::size_t kCount>
+HWY_INLINE V add_vectors(const std::array<V, kCount>& v) {
+  if constexpr (kCount == 1) {
+    return v[0];
+  } else {
+    return add_vectors(
+        array_of<kCount / 2>([&](auto k) SLUICE_ATTR { return v[k] + v[k + kCount / 2]; }));
+  }
 }
 
 /// Place in the sums of the particles j of an entry, or of its vector `part`.
 template <typename T>
-HWY_INLINE T* place_of(T* sums, std::size_t stride, const PairList::Chunk& list, std::size_t entry,
-                       std::size_t part) {
-  return sums + stride * list.targets[entry] + part * Blocks<T>::j_lanes;
+HWY_INLINE T* place_of(T* sums, std::size_t stride, const std::uint32_t* HWY_RESTRICT targets,
+                       std::size_t entry, std::size_t part) {
+  return sums + stride * targets[entry] + part * Blocks<T>::j_lanes;
 }
 
-/// Calls body(slot of j, x_ij/h, entry, part) for every vector of pairs of cluster c, the c-th of
-/// the list's chunk.
-template <int Dim, typename T, class V, class Body>
-HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c,
-                              const PairView<T, Dim>& other, const OriginShift<T, Dim>& shift,
-                              const std::array<V, Dim>& x_i, const Body& body) {
+/// The components of a vector field, from the place of its first in a cluster on.
+template <int Dim, typename T>
+HWY_INLINE auto load_i_axes(const T* HWY_RESTRICT from) {
+  return array_of<Dim>([&](auto axis) SLUICE_ATTR { return load_i(from + kCluster * axis); });
+}
+
+/// The positions of the particles i from `slot` on.
+template <int Dim, typename T>
+HWY_INLINE auto load_places(const PairView<T, Dim>& view, std::size_t slot) {
+  const T* HWY_RESTRICT from = view.values + PairFields<Dim>::at(slot);
+  return array_of<Blocks<T>::i_vectors>(
+      [&](auto k) SLUICE_ATTR { return load_i_axes<Dim>(from + k * Blocks<T>::i_count); });
+}
+
+/// The particles j of a vector, by the place of the first's fields. What is not asked for is not
+/// read.
+template <typename T, int Dim>
+struct PairJ {
+  using Fields = PairFields<Dim>;
+  const T* at;
+  std::size_t psi;
+
+  HWY_INLINE auto field(std::size_t which) const { return load_j(at + Fields::begin(which)); }
+  HWY_INLINE auto velocity(std::size_t axis) const { return field(Fields::velocity + axis); }
+  HWY_INLINE auto excess() const { return field(Fields::excess); }
+  HWY_INLINE auto volume() const { return field(Fields::volume); }
+  HWY_INLINE auto diffused() const { return field(psi); }
+  HWY_INLINE auto pressure_term() const { return field(Fields::pressure_term); }
+  /// x_ij/h.
+  template <class V>
+  HWY_INLINE std::array<V, Dim> away_from(const std::array<V, Dim>& x_i) const {
+    return array_of<Dim>([&](auto axis)
+                             SLUICE_ATTR { return x_i[axis] - field(Fields::position + axis); });
+  }
+};
+
+/// Calls body(j, x_i, entry, part) for every vector of particles j against cluster c, the c-th of
+/// the list's chunk; x_i are its positions as seen from there.
+template <int Dim, typename T, class X, class Body>
+HWY_INLINE void for_each_pair(const PairList::Chunk& list, std::size_t c, PairView<T, Dim> other,
+                              const OriginShift<T, Dim>& shift, const X& x_i, const Body& body) {
   using B = Blocks<T>;
   using Entry = ListEntry<Dim>;
   const typename B::D d;
   const std::uint32_t* HWY_RESTRICT entries = list.entries.data();
   std::uint32_t seen_from = Entry::kSameOriginCell;
-  std::array<V, Dim> x_seen = x_i;
-  for (std::size_t n = list.begin[c]; n != list.begin[c + 1]; ++n) {
-    const std::size_t slot = kCluster * Entry::cluster(entries[n]);
+  X x_seen = x_i;
+  const std::size_t end = list.begin[c + 1];
+  for (std::size_t n = list.begin[c]; n != end; ++n) {
+    const T* HWY_RESTRICT cluster =
+        other.values + PairFields<Dim>::at(kCluster * Entry::cluster(entries[n]));
     const std::uint32_t code = Entry::code(entries[n]);
     if (HWY_UNLIKELY(code != seen_from)) {
       seen_from = code;
-      unroll<Dim>([&](auto axis)
-                      HWY_ATTR { x_seen[axis] = x_i[axis] + hn::Set(d, shift.of[axis][code]); });
+      unroll<B::i_vectors>([&](auto k) SLUICE_ATTR {
+        unroll<Dim>([&](auto axis) SLUICE_ATTR {
+          x_seen[k][axis] = x_i[k][axis] + hn::Set(d, shift.of[axis][code]);
+        });
+      });
     }
     for (std::size_t part = 0; part < B::j_vectors; ++part) {
-      const std::size_t j = slot + part * B::j_lanes;
-      const auto x_ij = array_of<Dim>(
-          [&](auto axis) HWY_ATTR { return x_seen[axis] - load_j(other.position[axis] + j); });
-      body(j, x_ij, n, part);
+      body(PairJ<T, Dim>{cluster + part * B::j_lanes, other.diffused}, x_seen, n, part);
     }
   }
 }

@@ -85,19 +85,6 @@ struct RateSums {
   };
 };
 
-/// The particles j of a vector, as terms see them: what no term asks for is not read.
-template <typename T, int Dim>
-struct PairJ {
-  const PairView<T, Dim>& from;
-  std::size_t slot;
-
-  HWY_INLINE auto velocity(std::size_t axis) const { return load_j(from.velocity[axis] + slot); }
-  HWY_INLINE auto excess() const { return load_j(from.excess + slot); }
-  HWY_INLINE auto volume() const { return load_j(from.volume + slot); }
-  HWY_INLINE auto diffused() const { return load_j(from.diffused + slot); }
-  HWY_INLINE auto pressure_term() const { return load_j(from.pressure_term + slot); }
-};
-
 }  // namespace sluice::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -29,42 +29,53 @@ void sum_reinitialisation(const SweepTask<T, Dim>& task) {
   const OriginShift<T, Dim>& shift = task.constants->origin_shift;
   constexpr const SumBlocks<Dim>& blocks = kReinitialisationSums<Dim>;
   std::fill_n(task.sums, blocks.stride * task.to_fluid->places(), T{});
+  using Fields = PairFields<Dim>;
+  constexpr std::size_t kVectors = B::i_vectors;
   for (std::size_t c = 0; c < task.clusters; ++c) {
-    for (std::size_t part = 0; part < kCluster; part += B::i_count) {
-      const std::size_t slot = kCluster * (task.first_cluster + c) + part;
-      const auto x_i = load_i<Dim>(task.self.position, slot);
-      const V volume_i = load_i(task.self.volume + slot);
-      const V numerator_i = ShepardSummands::numerator(load_i(task.self.excess + slot), volume_i);
-      V excess = hn::Zero(d);
-      V weight = hn::Zero(d);
-      const auto add = [&]<Share kShare>(const PairList::Chunk& list,
-                                         const PairView<T, Dim>& other) HWY_ATTR {
-        const auto add_pairs = [&](std::size_t j, const std::array<V, Dim>& x_ij, std::size_t n,
-                                   std::size_t of_j) HWY_ATTR {
+    const std::size_t slot = kCluster * (task.first_cluster + c);
+    const auto x_i = load_places(task.self, slot);
+    OfI<T, V> volume_i, numerator_i, excess, weight;
+    unroll<kVectors>([&](auto k) SLUICE_ATTR {
+      const T* const i = task.self.values + Fields::at(slot + k * B::i_count);
+      volume_i[k] = load_i(i + Fields::begin(Fields::volume));
+      const V excess_i = load_i(i + Fields::begin(Fields::excess));
+      numerator_i[k] = ShepardSummands::numerator(excess_i, volume_i[k]);
+      excess[k] = weight[k] = hn::Zero(d);
+    });
+    const auto add = [&]<Share kShare>(const PairList::Chunk& list,
+                                       PairView<T, Dim> other) SLUICE_ATTR {
+      const auto add_pairs = [&](const PairJ<T, Dim>& j, const auto& x_seen, std::size_t n,
+                                 std::size_t part) SLUICE_ATTR {
+        const V volume = j.volume();
+        const V s = ShepardSummands::numerator(j.excess(), volume);
+        std::array<OfI<T, V>, blocks.count> of_j;
+        unroll<kVectors>([&](auto k) SLUICE_ATTR {
+          const auto x_ij = j.away_from(x_seen[k]);
           const V w = Shape::value(d, dot(x_ij, x_ij));
-          const V volume = load_j(other.volume + j);
-          const V s = ShepardSummands::numerator(load_j(other.excess + j), volume);
-          excess = hn::MulAdd(w, s, excess);
-          weight = hn::MulAdd(w, volume, weight);
-          if constexpr (kShare == Share::both) {
-            const V minus_w = hn::Neg(w);
-            std::array<V, blocks.count> sums_of_j;
-            sums_of_j[blocks.density] = minus_w * numerator_i;
-            sums_of_j[blocks.divisor] = minus_w * volume_i;
-            T* const to = place_of(task.sums, blocks.stride, list, n, of_j);
-            subtract_from_j<blocks.stride>(to, sums_of_j);
-          }
-        };
-        for_each_pair<Dim>(list, c, other, shift, x_i, add_pairs);
+          excess[k] = hn::MulAdd(w, s, excess[k]);
+          weight[k] = hn::MulAdd(w, volume, weight[k]);
+          const V minus_w = hn::Neg(w);
+          of_j[blocks.density][k] = minus_w * numerator_i[k];
+          of_j[blocks.divisor][k] = minus_w * volume_i[k];
+        });
+        if constexpr (kShare == Share::both) {
+          T* const to = place_of(task.sums, blocks.stride, list.targets.data(), n, part);
+          subtract_from_j<blocks.stride>(to, array_of<blocks.count>([&](auto block) SLUICE_ATTR {
+                                           return add_vectors(of_j[block]);
+                                         }));
+        }
       };
-      add.template operator()<Share::both>(*task.to_fluid, task.fluid);
-      if (task.to_wall != nullptr) {
-        add.template operator()<Share::i_alone>(*task.to_wall, task.wall);
-      }
-      T* const sums = task.sums + blocks.stride * c + part;
-      add_lanes(excess, sums + kCluster * blocks.density);
-      add_lanes(weight, sums + kCluster * blocks.divisor);
+      for_each_pair<Dim, T>(list, c, other, shift, x_i, add_pairs);
+    };
+    add.template operator()<Share::both>(*task.to_fluid, task.fluid);
+    if (task.to_wall != nullptr) {
+      add.template operator()<Share::i_alone>(*task.to_wall, task.wall);
     }
+    T* const sums = task.sums + blocks.stride * c;
+    unroll<kVectors>([&](auto k) SLUICE_ATTR {
+      add_lanes(excess[k], sums + kCluster * blocks.density + k * B::i_count);
+      add_lanes(weight[k], sums + kCluster * blocks.divisor + k * B::i_count);
+    });
   }
 }
 

@@ -55,8 +55,9 @@ struct SearchTask {
     std::uint32_t end = 0;
   };
   BoxesView<Dim> boxes;                  ///< of the clusters j
-  std::array<float, Dim> low{}, high{};  ///< of cluster i, with the cut-off, h
-  float left_after{};                    ///< least low[0] from cluster i on
+  std::array<float, Dim> low{}, high{};  ///< of cluster i, h
+  float range{};                         ///< the cut-off, h
+  float left_after{};                    ///< least low[0] from cluster i on, less the cut-off
   std::uint32_t first = 0;               ///< clusters j before it are left out
   std::span<Row> rows;                   ///< of the rows near i; `next` is moved on
   std::uint32_t* out = nullptr;          ///< entries; room for all clusters of the rows and kTail

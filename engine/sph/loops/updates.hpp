@@ -98,6 +98,18 @@ struct PairScales {
   const typename Grid<Dim>::OriginCell* origin_cell = nullptr;
 };
 
+/// The numbers of the bits that are set in a byte, from the lowest on.
+inline constexpr auto kBitsOfByte = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> numbers{};
+  for (unsigned byte = 0; byte < 256; ++byte) {
+    std::size_t count = 0;
+    for (std::uint8_t bit = 0; bit < 8; ++bit) {
+      if ((byte >> bit & 1U) != 0) numbers[byte][count++] = bit;
+    }
+  }
+  return numbers;
+}();
+
 /// A row, by its clusters, of which there are some, and the part of it that is near a point, in
 /// smoothing lengths of the method.
 struct RowPart {
@@ -151,7 +163,7 @@ struct Updates {
                           PairArrays<T, Dim>&) = nullptr;
   /// Whether a particle, `elapsed` h/c after the paths began, is off its own.
   void (*compare)(const ParticleSpan<Dim>&, const PairArrays<T, Dim>&, const ListPathsView<T, Dim>&,
-                  const Skin<T>&, T elapsed, Motion&) = nullptr;
+                  T elapsed, Motion&) = nullptr;
   /// Adds to a chunk's own sums those that others have for it, in this order.
   void (*gather)(std::span<const Contribution>, const T* const* sums_of_chunks, std::size_t stride,
                  T* own) = nullptr;

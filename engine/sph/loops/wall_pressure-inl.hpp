@@ -28,26 +28,27 @@ void sum_wall_pressure(const SweepTask<T, Dim>& task) {
   const OriginShift<T, Dim>& shift = task.constants->origin_shift;
   const WallPressureSummand<T, Dim> term{task.constants->gravity};
   for (std::size_t c = 0; c < task.clusters; ++c) {
-    for (std::size_t part = 0; part < kCluster; part += B::i_count) {
-      const std::size_t slot = kCluster * (task.first_cluster + c) + part;
-      V pressure = hn::Zero(d);
-      V weight = hn::Zero(d);
-      const auto add = [&](std::size_t j, const std::array<V, Dim>& x_ij, std::size_t, std::size_t)
-                           HWY_ATTR {
-                             const V w = Shape::value(d, dot(x_ij, x_ij));
-                             const V p = term.summand(d, x_ij, load_j(task.fluid.excess + j));
-                             pressure = hn::MulAdd(w, p, pressure);
-                             weight = weight + w;
-                           };
-      for_each_pair<Dim>(*task.to_fluid, c, task.fluid, shift,
-                         load_i<Dim>(task.self.position, slot), add);
-      T above[B::i_count] = {};
-      T below[B::i_count] = {};
-      add_lanes(pressure, above);
-      add_lanes(weight, below);
-      for (std::size_t i = 0; i < B::i_count; ++i) {
-        task.sums[slot + i] = below[i] > T{0} ? above[i] / below[i] : T{0};
-      }
+    const std::size_t slot = kCluster * (task.first_cluster + c);
+    OfI<T, V> pressure, weight;
+    unroll<B::i_vectors>([&](auto k) SLUICE_ATTR { pressure[k] = weight[k] = hn::Zero(d); });
+    const auto add = [&](const PairJ<T, Dim>& j, const auto& x_seen, std::size_t,
+                         std::size_t) SLUICE_ATTR {
+      unroll<B::i_vectors>([&](auto k) SLUICE_ATTR {
+        const auto x_ij = j.away_from(x_seen[k]);
+        const V w = Shape::value(d, dot(x_ij, x_ij));
+        pressure[k] = hn::MulAdd(w, term.summand(d, x_ij, j.excess()), pressure[k]);
+        weight[k] = weight[k] + w;
+      });
+    };
+    for_each_pair<Dim, T>(*task.to_fluid, c, task.fluid, shift, load_places(task.self, slot), add);
+    T above[kCluster] = {};
+    T below[kCluster] = {};
+    unroll<B::i_vectors>([&](auto k) SLUICE_ATTR {
+      add_lanes(pressure[k], above + k * B::i_count);
+      add_lanes(weight[k], below + k * B::i_count);
+    });
+    for (std::size_t i = 0; i < kCluster; ++i) {
+      task.sums[slot + i] = below[i] > T{0} ? above[i] / below[i] : T{0};
     }
   }
 }

@@ -8,13 +8,6 @@
 
 namespace sluice {
 
-/// Read access to ListPaths.
-template <typename T, int Dim>
-struct ListPathsView {
-  std::array<const T*, Dim> position{};
-  std::array<const T*, Dim> velocity{};
-};
-
 /// What the lists allow: for `lifetime` a particle may be off its path by `least` and `per_speed`
 /// times its speed, which is taken as the sum of |U| along all axes. Units h and c.
 template <typename T>
@@ -24,12 +17,39 @@ struct Skin {
   T per_speed{};
 };
 
+/// Read access to ListPaths.
+template <typename T, int Dim>
+struct ListPathsView {
+  std::array<const T*, Dim> position{};
+  std::array<const T*, Dim> velocity{};
+  Skin<T> skin{};
+};
+
 /// How long pair lists serve changes no bit of a result, for what is beyond the support adds zero.
 /// Longer lists serve longer and hold more pairs that are none: a particle may be off its path by
 /// this much and a twentieth of its way along it. Twice that would spare a twelfth of the lists
 /// and sum 3 % more pairs (tests/bench/README.md).
 template <typename T>
-inline constexpr Skin<T> kSkin{T{15}, static_cast<T>(0.05), static_cast<T>(0.05 * 15.0)};
+[[nodiscard]] inline Skin<T> skin_for(double lifetime) {
+  return {static_cast<T>(lifetime), static_cast<T>(0.05), static_cast<T>(0.05 * lifetime)};
+}
+
+/// For how long new lists are made, h/c. Where particles collide some leave their paths within a
+/// few h/c, and lists that were to serve for longer would hold pairs in vain.
+class ListLifetime {
+ public:
+  [[nodiscard]] double value() const { return value_; }
+  /// Lists expired at this age, before their time.
+  void expired(double age) { value_ = std::clamp(kSpare * age, kShortest, kLongest); }
+  /// Lists served for all of their time.
+  void served() { value_ = std::min(kSpare * value_, kLongest); }
+
+ private:
+  static constexpr double kShortest = 2.0;
+  static constexpr double kLongest = 15.0;
+  static constexpr double kSpare = 1.5;
+  double value_ = kLongest;
+};
 
 /// Speed of a path along one axis for a particle of this speed, in c. A faster particle, or one
 /// whose speed is not a number, leaves its path.
@@ -43,9 +63,10 @@ template <typename T>
 /// moves together needs no new list however fast it is.
 template <typename T, int Dim>
 struct ListPaths {
-  AlignedAxes<T, Dim> position;  ///< X
-  AlignedAxes<T, Dim> velocity;  ///< U
-  double age = 0.0;              ///< of the lists, h/c
+  AlignedAxes<T, Dim> position;     ///< X
+  AlignedAxes<T, Dim> velocity;     ///< U
+  Skin<T> skin = skin_for<T>(0.0);  ///< within which the lists hold
+  double age = 0.0;                 ///< of the lists, h/c
 
   void resize(std::size_t slots) {
     for (auto* vector : {&position, &velocity}) {
@@ -56,13 +77,14 @@ struct ListPaths {
   void begin(const PairArrays<T, Dim>& now, std::size_t begin, std::size_t end) {
     for (std::size_t axis = 0; axis < Dim; ++axis) {
       for (std::size_t s = begin; s < end; ++s) {
-        position[axis][s] = now.position[axis][s];
-        velocity[axis][s] = path_speed(now.velocity[axis][s]);
+        using Fields = PairFields<Dim>;
+        position[axis][s] = now.value(Fields::position + axis, s);
+        velocity[axis][s] = path_speed(now.value(Fields::velocity + axis, s));
       }
     }
   }
   [[nodiscard]] ListPathsView<T, Dim> view() const {
-    return {data_of<T, Dim>(position), data_of<T, Dim>(velocity)};
+    return {data_of<T, Dim>(position), data_of<T, Dim>(velocity), skin};
   }
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = 0;

@@ -65,52 +65,77 @@ template <typename T, int Dim>
   return data;
 }
 
+/// The fields of PairArrays, in the order in which those of a cluster lie in memory.
+template <int Dim>
+struct PairFields {
+  static constexpr std::size_t position = 0;                 ///< X, one field an axis
+  static constexpr std::size_t velocity = Dim;               ///< U, likewise
+  static constexpr std::size_t excess = 2 * Dim;             ///< s
+  static constexpr std::size_t volume = 2 * Dim + 1;         ///< V
+  static constexpr std::size_t diffused = 2 * Dim + 2;       ///< psi of the density diffusion
+  static constexpr std::size_t pressure_term = 2 * Dim + 3;  ///< A
+  static constexpr std::size_t count = 2 * Dim + 4;
+
+  /// Place of a field's value for a slot, and of its first after that of the first slot of all.
+  [[nodiscard]] static constexpr std::size_t at(std::size_t slot) {
+    return slot / kCluster * (count * kCluster) + slot % kCluster;
+  }
+  [[nodiscard]] static constexpr std::size_t begin(std::size_t field) { return field * kCluster; }
+};
+
 /// Read access to PairArrays.
 template <typename T, int Dim>
 struct PairView {
-  std::array<const T*, Dim> position{};
-  std::array<const T*, Dim> velocity{};
-  const T* excess = nullptr;
-  const T* volume = nullptr;
-  const T* diffused = nullptr;
-  const T* pressure_term = nullptr;
+  const T* values = nullptr;
+  std::size_t diffused = PairFields<Dim>::diffused;  ///< the field that is psi
 };
 
-/// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one entry per
-/// slot. Positions are relative to the origin of the cluster's origin cell, so that single
-/// precision resolves them in a domain of any size.
+/// What the pair sums read of a set of particles, dimensionless (see terms-inl.hpp), one value per
+/// slot. The fields of a cluster lie side by side: a sweep that comes to a cluster finds them all
+/// in a few lines of the cache. Positions are relative to the origin of the cluster's origin cell,
+/// so that single precision resolves them in a domain of any size.
 template <typename T, int Dim>
-struct PairArrays {
-  AlignedAxes<T, Dim> position;   ///< X
-  AlignedAxes<T, Dim> velocity;   ///< U
-  AlignedArray<T> excess;         ///< s
-  AlignedArray<T> volume;         ///< V
-  AlignedArray<T> pressure_term;  ///< A
-  AlignedArray<T> diffused;       ///< psi of the density diffusion; empty where that is s
+class PairArrays {
+ public:
+  using Fields = PairFields<Dim>;
 
-  void resize(std::size_t slots) {
-    for (auto* vector : {&position, &velocity}) {
-      for (AlignedArray<T>& along : *vector) along.resize(slots);
-    }
-    for (auto* a : {&excess, &volume, &pressure_term}) a->resize(slots);
+  /// The values of a field.
+  class Field {
+   public:
+    Field(T* values, std::size_t field) : begin_(values + Fields::begin(field)) {}
+    T& operator[](std::size_t slot) const { return begin_[Fields::at(slot)]; }
+
+   private:
+    T* begin_;
+  };
+
+  void resize(std::size_t slots) { values_.resize(Fields::at(slots)); }
+  /// psi is a field of its own. Otherwise it is s.
+  void keep_diffused() { diffused_ = Fields::diffused; }
+  [[nodiscard]] bool keeps_diffused() const { return diffused_ == Fields::diffused; }
+
+  [[nodiscard]] Field field(std::size_t which) { return {values_.data(), which}; }
+  [[nodiscard]] Field position(std::size_t axis) { return field(Fields::position + axis); }
+  [[nodiscard]] Field excess() { return field(Fields::excess); }
+  [[nodiscard]] Field volume() { return field(Fields::volume); }
+  [[nodiscard]] Field pressure_term() { return field(Fields::pressure_term); }
+  [[nodiscard]] T value(std::size_t which, std::size_t slot) const {
+    return values_[Fields::begin(which) + Fields::at(slot)];
   }
-  [[nodiscard]] PairView<T, Dim> view() const {
-    const T* psi = diffused.size() > 0 ? diffused.data() : excess.data();
-    return {.position = data_of<T, Dim>(position),
-            .velocity = data_of<T, Dim>(velocity),
-            .excess = excess.data(),
-            .volume = volume.data(),
-            .diffused = psi,
-            .pressure_term = pressure_term.data()};
+  /// The values of a field for the cluster that begins with a slot.
+  [[nodiscard]] T* cluster(std::size_t which, std::size_t slot) {
+    return values_.data() + Fields::begin(which) + Fields::at(slot);
   }
-  [[nodiscard]] std::size_t bytes() const {
-    std::size_t sum = 0;
-    for (const auto* vector : {&position, &velocity}) {
-      for (const AlignedArray<T>& along : *vector) sum += along.bytes();
-    }
-    for (const auto* a : {&excess, &volume, &diffused, &pressure_term}) sum += a->bytes();
-    return sum;
+  [[nodiscard]] const T* cluster(std::size_t which, std::size_t slot) const {
+    return values_.data() + Fields::begin(which) + Fields::at(slot);
   }
+
+  [[nodiscard]] PairView<T, Dim> view() const { return {values_.data(), diffused_}; }
+  [[nodiscard]] std::size_t bytes() const { return values_.bytes(); }
+
+ private:
+  AlignedArray<T> values_;
+  std::size_t diffused_ = Fields::excess;
 };
 
 /// Boxes that hold the clusters of a set, in h (ClusterBounds), with tails.

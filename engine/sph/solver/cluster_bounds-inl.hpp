@@ -54,7 +54,7 @@ template <typename T>
 void ClusterBounds<Dim>::assign_boxes(std::size_t begin, std::size_t end, const Grid<Dim>& grid,
                                       double smoothing_length, const ListPathsView<T, Dim>& paths) {
   using cluster_bounds::kHuge;
-  constexpr Skin<T> skin = kSkin<T>;
+  const Skin<T>& skin = paths.skin;
   for (std::size_t c = begin; c < end; ++c) {
     std::array<cluster_bounds::Extent<T>, Dim> extent;
     for (std::size_t s = kCluster * c; s < kCluster * (c + 1); ++s) {

@@ -48,11 +48,13 @@ DummyParticles<T, Dim>::DummyParticles(ThreadTeam& team, const Grid<Dim>& grid,
     const VecN<Dim> origin = grid.origin_cell_center(bounds_.origin_cell[s / kCluster]);
     for (std::size_t axis = 0; axis < Dim; ++axis) {
       const double from = origin[static_cast<Eigen::Index>(axis)];
-      arrays_.position[axis][s] =
+      arrays_.position(axis)[s] =
           static_cast<T>(used ? (slot_position[axis][s] - from) / h : -nowhere(s));
     }
-    arrays_.volume[s] = T{1};
+    arrays_.volume()[s] = T{1};
   }
+  paths_.resize(slots);
+  paths_.begin(arrays_, 0, slots);
   bounds_.resize(layout_);
   bounds_.assign_boxes(0, layout_.clusters(), grid, h, set().paths);
   bounds_.assign_rows(team, layout_);
@@ -78,9 +80,9 @@ void DummyParticles<T, Dim>::sum_pressures(ThreadTeam& team, const MethodN<Dim>&
       T excess = excess_[s];
       if (method.wall_pressure == WallPressure::clamped) excess = std::max(excess, T{0});
       const T volume = T{1} / (T{1} + excess);
-      arrays_.excess[s] = excess;
-      arrays_.volume[s] = volume;
-      arrays_.pressure_term[s] = excess * volume * volume;
+      arrays_.excess()[s] = excess;
+      arrays_.volume()[s] = volume;
+      arrays_.pressure_term()[s] = excess * volume * volume;
     }
   });
 }
@@ -89,10 +91,12 @@ template <typename T, int Dim>
 void DummyParticles<T, Dim>::lift(const std::optional<GateMotionN<Dim>>& gate, double time) {
   std::erase_if(lifted_, [&](const GateParticle& p) {
     if (!gate->has_passed(p.place, time)) return false;
-    for (AlignedArray<T>& along : arrays_.position)
-      along[p.slot] = static_cast<T>(-nowhere(p.slot));
-    arrays_.excess[p.slot] = arrays_.pressure_term[p.slot] = T{0};
-    arrays_.volume[p.slot] = T{1};
+    for (std::size_t axis = 0; axis < Dim; ++axis) {
+      arrays_.position(axis)[p.slot] = static_cast<T>(-nowhere(p.slot));
+    }
+    paths_.begin(arrays_, p.slot, p.slot + 1);
+    arrays_.excess()[p.slot] = arrays_.pressure_term()[p.slot] = T{0};
+    arrays_.volume()[p.slot] = T{1};
     return true;
   });
 }
@@ -103,7 +107,7 @@ std::vector<double> DummyParticles<T, Dim>::pressures(const MethodN<Dim>& method
   const double scale = method.reference_density * method.sound_speed * method.sound_speed;
   for (std::size_t s = 0; s < layout_.slots(); ++s) {
     if (source_[s] == Order::kEmpty) continue;
-    result[source_[s]] = static_cast<double>(arrays_.excess[s]) * scale;
+    result[source_[s]] = static_cast<double>(arrays_.value(PairFields<Dim>::excess, s)) * scale;
   }
   return result;
 }

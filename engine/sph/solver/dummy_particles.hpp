@@ -26,10 +26,7 @@ class DummyParticles {
 
   [[nodiscard]] bool empty() const { return layout_.slots() == 0; }
   [[nodiscard]] PairView<T, Dim> view() const { return arrays_.view(); }
-  [[nodiscard]] PairSet<T, Dim> set() const {
-    const PairView<T, Dim> now = view();
-    return {layout_, bounds_, {now.position, now.velocity}};
-  }
+  [[nodiscard]] PairSet<T, Dim> set() const { return {layout_, bounds_, paths_.view()}; }
 
   /// eq. 9 over `list`, of this set and the fluid, and from it the density, volume and stress of
   /// every particle (eq. 3).
@@ -43,7 +40,9 @@ class DummyParticles {
 
   /// Pa, in the order of `places`, as they were summed last.
   [[nodiscard]] std::vector<double> pressures(const MethodN<Dim>& method) const;
-  [[nodiscard]] std::size_t bytes() const { return arrays_.bytes() + excess_.bytes(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return arrays_.bytes() + paths_.bytes() + excess_.bytes();
+  }
 
  private:
   struct GateParticle {
@@ -56,6 +55,7 @@ class DummyParticles {
   std::vector<std::uint32_t> source_;  // of the layout
   ClusterBounds<Dim> bounds_;
   PairArrays<T, Dim> arrays_;
+  ListPaths<T, Dim> paths_;           // at rest
   AlignedArray<T> excess_;            // sums of eq. 9
   std::vector<GateParticle> lifted_;  // those of the lifted wall that still stand
 };

@@ -124,6 +124,7 @@ class Engine final : public SolverN<Dim>::Impl {
   PairArrays<T, Dim> pairs_;
   PairScales<Dim> scales_;
   ListPaths<T, Dim> paths_;
+  ListLifetime list_lifetime_;
   PairList fluid_to_fluid_, fluid_to_wall_, wall_to_fluid_;
   ChunkSums<T> sums_;     // of fluid_to_fluid_
   bool leaving_ = false;  // a particle is to be removed

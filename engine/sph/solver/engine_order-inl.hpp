@@ -62,13 +62,19 @@ void Engine<T, Dim>::advance_paths(double duration) {
 
 template <typename T, int Dim>
 void Engine<T, Dim>::compare_with_paths(const Span& p, Motion& seen) {
-  sweeps_.updates.compare(p, pairs_, paths_.view(), kSkin<T>, static_cast<T>(paths_.age), seen);
+  sweeps_.updates.compare(p, pairs_, paths_.view(), static_cast<T>(paths_.age), seen);
 }
 
 /// New lists where the old ones no longer hold.
 template <typename T, int Dim>
 void Engine<T, Dim>::keep_lists(const Motion& seen) {
-  if (!seen.expired && paths_.age <= kSkin<double>.lifetime) return;
+  if (seen.expired) {
+    list_lifetime_.expired(paths_.age);
+  } else if (paths_.age > list_lifetime_.value()) {
+    list_lifetime_.served();
+  } else {
+    return;
+  }
   const PassClock clock(seconds_of(Pass::sort));
   make_lists();
 }
@@ -133,7 +139,7 @@ void Engine<T, Dim>::bind() {
                               particles_.id);
   scales_ = scales();
   pairs_.resize(slots);
-  if (keeps_diffused(method_)) pairs_.diffused.resize(slots);
+  if (keeps_diffused(method_)) pairs_.keep_diffused();
   paths_.resize(slots);
   for_chunks([&](const Span& p, Motion&) { write_pairs(p); });
   make_lists();
@@ -143,6 +149,7 @@ void Engine<T, Dim>::bind() {
 template <typename T, int Dim>
 void Engine<T, Dim>::make_lists() {
   paths_.age = 0.0;
+  paths_.skin = skin_for<T>(list_lifetime_.value());
   bounds_.resize(layout_);
   for_chunks([&](const Span& p, Motion&) {
     paths_.begin(pairs_, p.begin, p.end);

@@ -75,7 +75,7 @@ void Engine<T, Dim>::reinitialise() {
         [&](const Span& p, const ChunkRates& rates, Motion&) {
           sweeps_.updates.reinitialise(p, rates, method_.reference_density);
           sweeps_.updates.write_densities(p, scales_, pairs_);
-          if (pairs_.diffused.size() > 0) sweeps_.updates.write_places(p, scales_, pairs_);
+          if (pairs_.keeps_diffused()) sweeps_.updates.write_places(p, scales_, pairs_);
         },
         {Pass::reinitialisation, Pass::reinitialisation});
 }

@@ -63,9 +63,10 @@ class RowSearch {
     SearchTask<Dim> task;
     task.boxes = bounds_.view();
     for (std::size_t axis = 0; axis < Dim; ++axis) {
-      task.low[axis] = self.min[axis][i] - range_;
-      task.high[axis] = self.max[axis][i] + range_;
+      task.low[axis] = self.min[axis][i];
+      task.high[axis] = self.max[axis][i];
     }
+    task.range = range_;
     task.left_after = self.x_min_after[i] - range_;
     task.first = static_cast<std::uint32_t>(first);
     task.rows = rows_;

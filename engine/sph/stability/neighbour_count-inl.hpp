@@ -23,8 +23,9 @@ std::uint32_t count_most(const Layout& layout, const PairList& list,
         for (std::size_t i = first_i; i < first_i + kCluster; ++i) {
           for (std::size_t j = first_j; j < first_j + kCluster; ++j) {
             T r_sq{};
-            for (const AlignedArray<T>& along : pairs.position) {
-              r_sq += (along[i] - along[j]) * (along[i] - along[j]);
+            for (std::size_t axis = 0; axis < Dim; ++axis) {
+              const T away = pairs.value(axis, i) - pairs.value(axis, j);
+              r_sq += away * away;
             }
             if (!(r_sq < cut_off_sq)) continue;
             ++count[i];

@@ -212,14 +212,15 @@ class Ordered {
       const VecN<Dim> origin = grid_.origin_cell_center(bounds_.origin_cell[s / kCluster]);
       for (std::size_t axis = 0; axis < Dim; ++axis) {
         const double from = origin[static_cast<Eigen::Index>(axis)];
-        arrays_.position[axis][s] =
+        arrays_.position(axis)[s] =
             static_cast<T>(used ? points.position[axis][i] - from : nowhere(s));
-        arrays_.velocity[axis][s] = static_cast<T>(used ? points.velocity[axis][i] : 0.0);
+        arrays_.field(PairFields<Dim>::velocity + axis)[s] =
+            static_cast<T>(used ? points.velocity[axis][i] : 0.0);
       }
       const double excess = used ? points.excess[i] : 0.0;
-      arrays_.excess[s] = static_cast<T>(excess);
-      arrays_.volume[s] = static_cast<T>(1.0 / (1.0 + excess));
-      arrays_.pressure_term[s] = static_cast<T>(excess / std::pow(1.0 + excess, 2));
+      arrays_.excess()[s] = static_cast<T>(excess);
+      arrays_.volume()[s] = static_cast<T>(1.0 / (1.0 + excess));
+      arrays_.pressure_term()[s] = static_cast<T>(excess / std::pow(1.0 + excess, 2));
     }
   }
 
