@@ -325,7 +325,7 @@ TEST(InitialPressure, IsNotPassedThroughAPlateNorToWhatFallsOntoIt) {
 
 TEST(StartPlan, KeepsEveryExampleOnItsLatticeAndCountsItsParticles) {
   for (const auto& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
-    const Scene scene = parsed(json::parse(testing::read_text(path)));
+    const Scene scene = testing::parsed_file(path);
     const StartPlan plan = start_plan(scene);
     if (testing::takes_long_to_pack(path)) {
       EXPECT_TRUE(plan.packed) << path;
