@@ -4,6 +4,7 @@ usage: meshes.py SLUICE [unittest arguments]
 """
 
 import hashlib
+import http.client
 import json
 import os
 import pathlib
@@ -118,7 +119,14 @@ class Meshes(unittest.TestCase):
         self.assertEqual(os.listdir(pathlib.Path(self.server.data) / "jobs"), [])
 
     def test_bodies_beyond_the_limits_are_refused(self):
-        self.problem(self.post(*submission(self.scene, bytes(33 * 1024 * 1024))), 413)
+        # A client that waits for its answer before it sends: the others meet a closed connection.
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=60)
+        connection.putrequest("POST", "/v1/jobs")
+        for name, value in (*form([])[1].items(), ("Content-Length", str(33 * 1024 * 1024))):
+            connection.putheader(name, value)
+        connection.endheaders()
+        self.assertEqual(connection.getresponse().status, 413)
+        connection.close()
         large = self.problem(self.post(*submission(self.scene, bytes(LARGEST_MESH + 1))), 422)
         self.assertIn("at most 16777216", large["errors"][0]["detail"])
         body, headers = submission(self.scene, bytes(300 * 1024))

@@ -31,11 +31,6 @@ double cos_near_zero(double x) {
 
 const TriangleMesh& surface_of(const Heights& s) { return or_none(s.surface); }
 const TriangleMesh& surface_of(const Mesh& s) { return or_none(s.surface); }
-const TriangleMesh* surface_of(const Shape& shape) {
-  if (const auto* heights = std::get_if<Heights>(&shape)) return &surface_of(*heights);
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) return &surface_of(*mesh);
-  return nullptr;
-}
 
 double sin_of_degrees(double degrees) {
   constexpr double kRadians = std::numbers::pi / 180;

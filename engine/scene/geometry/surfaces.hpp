@@ -18,8 +18,6 @@ concept Meshed = std::same_as<S, Heights> || std::same_as<S, Mesh>;
 /// The surface of a body; an empty one where it could not be made.
 [[nodiscard]] const TriangleMesh& surface_of(const Heights& s);
 [[nodiscard]] const TriangleMesh& surface_of(const Mesh& s);
-/// That of any shape; nothing where it has no triangles of its own.
-[[nodiscard]] const TriangleMesh* surface_of(const Shape& shape);
 
 /// Surface, sides and base; every row as long as the first, two rows and columns at least.
 [[nodiscard]] Triangles triangles_of(const Heights& s);
@@ -49,7 +47,7 @@ template <Meshed S>
 }
 template <Meshed S>
 [[nodiscard]] double signed_distance(const S& s, const VecN<3>& point) {
-  const double distance = surface_of(s).distance(point);
+  const double distance = surface_of(s).nearest(point).distance;
   return surface_of(s).contains(point) ? -distance : distance;
 }
 template <Meshed S>

@@ -68,6 +68,14 @@ class LineView {
 
 double twice_area(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
+/// 1 or -1 where a line crosses a triangle, as its corners turn about it; else 0.
+int turn_of(const LineView::Point& a, const LineView::Point& b, const LineView::Point& c) {
+  const int turn = side_of(a.place, b.place);
+  const bool same =
+      turn != 0 && side_of(b.place, c.place) == turn && side_of(c.place, a.place) == turn;
+  return same ? turn : 0;
+}
+
 /// Where a line meets a triangle that it crosses: t by the parts of the area.
 double meeting(const LineView::Point& a, const LineView::Point& b, const LineView::Point& c) {
   const double of_a = twice_area(b.place, c.place);
@@ -80,9 +88,9 @@ double meeting(const LineView::Point& a, const LineView::Point& b, const LineVie
   return std::clamp(t, low, high);
 }
 
-/// Whether a line meets a box where t is `least` or more.
-bool meets(const BoxN<3>& box, const Vec3& origin, const Vec3& direction, double least) {
-  double enter = least;
+/// Whether a line meets a box.
+bool meets(const BoxN<3>& box, const Vec3& origin, const Vec3& direction) {
+  double enter = -std::numeric_limits<double>::infinity();
   double leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.min[axis] - origin[axis];
@@ -97,6 +105,12 @@ bool meets(const BoxN<3>& box, const Vec3& origin, const Vec3& direction, double
     leave = std::min(leave, std::max(one, other));
   }
   return enter <= leave;
+}
+
+/// Whether the way straight up from a point meets a box; exact, so that no margin is needed.
+bool is_below(const Vec3& point, const BoxN<3>& box) {
+  return box.max[1] > point[1] && box.min[0] <= point[0] && point[0] <= box.max[0] &&
+         box.min[2] <= point[2] && point[2] <= box.max[2];
 }
 
 double squared_distance(const BoxN<3>& box, const Vec3& point) {
@@ -199,51 +213,55 @@ BoxN<3> TriangleMesh::box_of(std::size_t i) const {
   return box;
 }
 
-/// Calls f(crossing) for each triangle that a line crosses, in no order; those of less t than
-/// `least` may be left out.
+/// Calls f(crossing) for each triangle that a line crosses, in no order.
 template <class F>
-void TriangleMesh::for_each_crossing(const Vec3& origin, const Vec3& direction, double least,
-                                     const F& f) const {
+void TriangleMesh::for_each_crossing(const Vec3& origin, const Vec3& direction, const F& f) const {
   const LineView across(origin, direction);
   const double far = std::max({bounds_.min.cwiseAbs().maxCoeff(), bounds_.max.cwiseAbs().maxCoeff(),
                                origin.cwiseAbs().maxCoeff()});
   const double margin = kLineMargin * far;
-  walk([&](const Node& node) { return meets(grown(node.box, margin), origin, direction, least); },
+  walk([&](const Node& node) { return meets(grown(node.box, margin), origin, direction); },
        [&](std::size_t i) {
          const auto [one, two, three] = triangle(i);
          const LineView::Point a = across(one), b = across(two), c = across(three);
-         const int turn = side_of(a.place, b.place);
-         if (turn == 0 || side_of(b.place, c.place) != turn || side_of(c.place, a.place) != turn) {
-           return;
-         }
-         f(Crossing{meeting(a, b, c), turn, i});
+         if (const int turn = turn_of(a, b, c); turn != 0) f(Crossing{meeting(a, b, c), turn, i});
        });
 }
 
 bool TriangleMesh::contains(const Vec3& point) const {
   if (!bounds_.contains(point)) return false;
   // Upwards: a bed is crossed once there.
+  const LineView across(point, Vec3::Unit(1));
   int depth = 0;
-  for_each_crossing(point, Vec3::Unit(1), 0.0, [&](const Crossing& each) {
-    if (each.t > 0.0) depth += each.turn;
-  });
+  walk([&](const Node& node) { return is_below(point, node.box); },
+       [&](std::size_t i) {
+         if (!is_below(point, box_of(i))) return;
+         const auto [one, two, three] = triangle(i);
+         const LineView::Point a = across(one), b = across(two), c = across(three);
+         const int turn = turn_of(a, b, c);
+         if (turn != 0 && meeting(a, b, c) > 0.0) depth += turn;
+       });
   return depth != 0;
 }
 
-double TriangleMesh::distance(const Vec3& point) const {
-  double least = std::numeric_limits<double>::infinity();
+TriangleMesh::Nearest TriangleMesh::nearest(const Vec3& point, double within) const {
+  Nearest found;
+  double least = within * within;
   walk([&](const Node& node) { return squared_distance(node.box, point) < least; },
        [&](std::size_t i) {
-         least = std::min(least, (nearest_point(triangle(i), point) - point).squaredNorm());
+         const Vec3 place = nearest_point(triangle(i), point);
+         const double distance = (place - point).squaredNorm();
+         if (distance >= least) return;
+         least = distance;
+         found = {std::sqrt(least), place};
        });
-  return std::sqrt(least);
+  return found;
 }
 
 std::vector<TriangleMesh::Crossing> TriangleMesh::ends_of_chords(const Vec3& origin,
                                                                  const Vec3& direction) const {
   std::vector<Crossing> all;
-  for_each_crossing(origin, direction, -std::numeric_limits<double>::infinity(),
-                    [&](const Crossing& each) { all.push_back(each); });
+  for_each_crossing(origin, direction, [&](const Crossing& each) { all.push_back(each); });
   std::sort(all.begin(), all.end(), [](const Crossing& one, const Crossing& other) {
     return std::tie(one.t, one.turn, one.triangle) < std::tie(other.t, other.turn, other.triangle);
   });

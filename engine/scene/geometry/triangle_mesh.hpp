@@ -43,8 +43,13 @@ class TriangleMesh {
   [[nodiscard]] Vec3 normal(std::size_t i) const;
 
   [[nodiscard]] bool contains(const Vec3& point) const;
-  /// From the surface, never negative; infinite where there are no triangles.
-  [[nodiscard]] double distance(const Vec3& point) const;
+  /// The nearest point of the surface, if it is nearer than `within`.
+  struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();  ///< m; infinite where there is none
+    Vec3 place = Vec3::Zero();
+  };
+  [[nodiscard]] Nearest nearest(const Vec3& point,
+                                double within = std::numeric_limits<double>::infinity()) const;
 
   /// Where a line origin + t direction enters the body and leaves it, by increasing t, in pairs.
   struct Crossing {
@@ -76,7 +81,7 @@ class TriangleMesh {
   [[nodiscard]] BoxN<3> box_of(std::size_t i) const;
   void build(const std::vector<Vec3>& middles, std::uint32_t first, std::uint32_t last);
   template <class F>
-  void for_each_crossing(const Vec3& origin, const Vec3& direction, double least, const F& f) const;
+  void for_each_crossing(const Vec3& origin, const Vec3& direction, const F& f) const;
 
   /// Calls leaf(i) for the triangles of each node that `wanted` accepts with all nodes above it.
   template <class Wanted, class Leaf>

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 
 constexpr std::size_t kMany = 1000;
 
-Triangles box() { return testing::box_mesh(Vec3(-0.25, 0, 1), Vec3(1, 2, 0.5)); }
+Triangles small_box() { return testing::box_mesh(Vec3(-0.25, 0, 1), Vec3(1, 2, 0.5)); }
 
 std::string error_of(const std::string& name, const std::string& bytes) {
   try {
@@ -35,9 +35,9 @@ std::string error_of(const std::string& name, const std::string& bytes) {
 }
 
 TEST(MeshFile, TheSameBodyIsReadFromEachKind) {
-  for (const auto& [name, bytes] :
-       {std::pair("box.stl", as_binary_stl(box())), std::pair("BOX.STL", as_ascii_stl(box())),
-        std::pair("box.obj", as_obj(box()))}) {
+  for (const auto& [name, bytes] : {std::pair("box.stl", as_binary_stl(small_box())),
+                                    std::pair("BOX.STL", as_ascii_stl(small_box())),
+                                    std::pair("box.obj", as_obj(small_box()))}) {
     const Triangles read = read_mesh_file(name, bytes, kMany);
     EXPECT_EQ(read.points.size(), 8u) << name << ": corners at one place are one";
     EXPECT_EQ(read.corners.size(), 12u) << name;
@@ -50,7 +50,7 @@ TEST(MeshFile, TheSameBodyIsReadFromEachKind) {
 }
 
 TEST(MeshFile, ABinaryFileMayBeginWithTheWordOfAsciiOnes) {
-  std::string bytes = as_binary_stl(box());
+  std::string bytes = as_binary_stl(small_box());
   bytes.replace(0, 5, "solid");
   EXPECT_EQ(read_mesh_file("box.stl", bytes, kMany).corners.size(), 12u);
 }
@@ -66,7 +66,7 @@ TEST(MeshFile, ObjFacesMayHaveMoreCornersAndCountFromTheEnd) {
 }
 
 TEST(MeshFile, TrianglesWithTwoCornersAtOnePlaceAreLeftOut) {
-  Triangles with_more = box();
+  Triangles with_more = small_box();
   with_more.corners.push_back({0, 1, 1});
   EXPECT_EQ(read_mesh_file("a.stl", as_binary_stl(with_more), kMany).corners.size(), 12u);
   const Triangles none{{Vec3(0, 0, 0), Vec3(1, 0, 0)}, {{0, 1, 1}}};
@@ -74,23 +74,23 @@ TEST(MeshFile, TrianglesWithTwoCornersAtOnePlaceAreLeftOut) {
 }
 
 TEST(MeshFile, CutOffFilesSayWhereAndHow) {
-  const std::string binary = as_binary_stl(box());
+  const std::string binary = as_binary_stl(small_box());
   EXPECT_THAT(error_of("a.stl", binary.substr(0, 300)),
               HasSubstr("has 300 bytes, but as a binary STL of 12 triangles (bytes 80 to 83) it "
                         "must have 684"));
   EXPECT_THAT(error_of("a.stl", binary.substr(0, 30)), HasSubstr("has 30 bytes"));
   EXPECT_THAT(error_of("a.stl", ""), HasSubstr("has 0 bytes"));
-  const std::string ascii = as_ascii_stl(box());
+  const std::string ascii = as_ascii_stl(small_box());
   EXPECT_THAT(error_of("a.stl", ascii.substr(0, ascii.find("endloop"))),
               HasSubstr("no more, where endloop must be: it was cut off"));
   EXPECT_THAT(error_of("a.obj", ""), HasSubstr("no triangle"));
 }
 
 TEST(MeshFile, HugeCountsAreRefusedBeforeAnythingIsMade) {
-  std::string binary = as_binary_stl(box());
+  std::string binary = as_binary_stl(small_box());
   binary.replace(80, 4, "\xff\xff\xff\xff");
   EXPECT_THAT(error_of("a.stl", binary), HasSubstr("4294967295 triangles"));
-  Triangles many = box();
+  Triangles many = small_box();
   while (many.corners.size() <= kMany) many.corners.push_back({0, 1, 2});
   for (const auto& [name, bytes] :
        {std::pair("a.stl", as_binary_stl(many)), std::pair("a.stl", as_ascii_stl(many)),
@@ -102,7 +102,7 @@ TEST(MeshFile, HugeCountsAreRefusedBeforeAnythingIsMade) {
 TEST(MeshFile, WhatIsNoPlaceIsRefusedWithItsPlaceInTheFile) {
   for (const float wrong :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e20F}) {
-    std::string binary = as_binary_stl(box());
+    std::string binary = as_binary_stl(small_box());
     std::memcpy(binary.data() + 84 + 12, &wrong, sizeof wrong);
     EXPECT_THAT(error_of("a.stl", binary), HasSubstr("a corner at byte 96 that is no place"));
   }
@@ -134,8 +134,8 @@ RC_GTEST_PROP(MeshFile, BytesThatWereChangedAreReadOrRefused, (unsigned seed)) {
     return std::uniform_int_distribution<std::size_t>(0, below - 1)(dice);
   };
   for (auto [name, bytes] :
-       {std::pair("a.stl", as_binary_stl(box())), std::pair("a.stl", as_ascii_stl(box())),
-        std::pair("a.obj", as_obj(box()))}) {
+       {std::pair("a.stl", as_binary_stl(small_box())),
+        std::pair("a.stl", as_ascii_stl(small_box())), std::pair("a.obj", as_obj(small_box()))}) {
     for (int k = 0; k < 3; ++k) bytes[any(bytes.size())] = static_cast<char>(any(256));
     if (any(2) == 0) bytes.resize(any(bytes.size()));
     try {

@@ -21,11 +21,11 @@ using testing::as_shape;
 using testing::ball_mesh;
 using testing::box_mesh;
 
-const Vec3 kCorner(0.25, -0.5, 1.0);
-const Vec3 kSize(1.5, 0.75, 2.0);
+const Vec3 kBoxCorner(0.25, -0.5, 1.0);
+const Vec3 kBoxSize(1.5, 0.75, 2.0);
 
-Cuboid<3> cuboid() { return {kCorner, kSize}; }
-Mesh cuboid_mesh() { return as_shape(box_mesh(kCorner, kSize)); }
+Cuboid<3> plain_box() { return {kBoxCorner, kBoxSize}; }
+Mesh plain_box_mesh() { return as_shape(box_mesh(kBoxCorner, kBoxSize)); }
 
 /// A bed of three by four nodes, or a level one.
 Heights bed(bool level) {
@@ -64,11 +64,16 @@ Mesh frame() {
   return as_shape(std::move(all));
 }
 
-std::vector<ShapeN<3>> bodies() {
-  return {cuboid_mesh(), as_shape(ball_mesh(Vec3(1, 1, 1), 1.25, 3)), bed(false), frame()};
+std::vector<ShapeN<3>> mesh_bodies() {
+  return {plain_box_mesh(), as_shape(ball_mesh(Vec3(1, 1, 1), 1.25, 3)), bed(false), frame()};
 }
 
-Vec3 somewhere(std::mt19937& dice) {
+const TriangleMesh& surface_in(const ShapeN<3>& body) {
+  if (const auto* heights = std::get_if<Heights>(&body)) return surface_of(*heights);
+  return surface_of(std::get<Mesh>(body));
+}
+
+Vec3 anywhere(std::mt19937& dice) {
   std::uniform_real_distribution<double> one(-2.0, 4.0);
   return {one(dice), one(dice), one(dice)};
 }
@@ -79,28 +84,28 @@ Vec3 on_grid(std::mt19937& dice) {
 }
 
 TEST(Meshes, AreClosed) {
-  for (const ShapeN<3>& body : bodies()) {
-    EXPECT_EQ(mesh_fault(surface_of(Shape(body))->triangles()), std::nullopt);
+  for (const ShapeN<3>& body : mesh_bodies()) {
+    EXPECT_EQ(mesh_fault(surface_in(body).triangles()), std::nullopt);
     EXPECT_GT(measure(body), 0.0);
   }
 }
 
 TEST(Meshes, ABoxOfTrianglesAnswersAsTheBox) {
-  const Mesh mesh = cuboid_mesh();
-  EXPECT_DOUBLE_EQ(measure(mesh), measure(cuboid()));
-  EXPECT_DOUBLE_EQ(perimeter(mesh), perimeter(cuboid()));
-  EXPECT_EQ(bounds(mesh).min, bounds(cuboid()).min);
-  EXPECT_EQ(bounds(mesh).max, bounds(cuboid()).max);
+  const Mesh mesh = plain_box_mesh();
+  EXPECT_DOUBLE_EQ(measure(mesh), measure(plain_box()));
+  EXPECT_DOUBLE_EQ(perimeter(mesh), perimeter(plain_box()));
+  EXPECT_EQ(bounds(mesh).min, bounds(plain_box()).min);
+  EXPECT_EQ(bounds(mesh).max, bounds(plain_box()).max);
   std::mt19937 dice(1);
   for (int k = 0; k < 2000; ++k) {
-    const Vec3 place = k % 2 == 0 ? somewhere(dice) : on_grid(dice);
-    const double distance = signed_distance(cuboid(), place);
+    const Vec3 place = k % 2 == 0 ? anywhere(dice) : on_grid(dice);
+    const double distance = signed_distance(plain_box(), place);
     ASSERT_NEAR(std::abs(signed_distance(mesh, place)), std::abs(distance), 1e-14);
     if (distance != 0.0) {
       ASSERT_EQ(contains(mesh, place), distance < 0.0) << place.transpose();
     }
-    const Vec3 way = somewhere(dice);
-    ASSERT_NEAR(farthest_along(mesh, way), farthest_along(cuboid(), way), 1e-13);
+    const Vec3 way = anywhere(dice);
+    ASSERT_NEAR(farthest_along(mesh, way), farthest_along(plain_box(), way), 1e-13);
   }
 }
 
@@ -111,7 +116,7 @@ TEST(Meshes, LevelHeightsAreABox) {
   EXPECT_DOUBLE_EQ(perimeter(level), perimeter(box));
   std::mt19937 dice(2);
   for (int k = 0; k < 1000; ++k) {
-    const Vec3 place = somewhere(dice);
+    const Vec3 place = anywhere(dice);
     ASSERT_NEAR(signed_distance(level, place), signed_distance(box, place), 1e-14);
   }
 }
@@ -146,7 +151,7 @@ TEST(Meshes, AFineBallAnswersAsTheBall) {
   EXPECT_NEAR(perimeter(mesh) / perimeter(ball), 1.0, 2e-3);
   std::mt19937 dice(3);
   for (int k = 0; k < 1000; ++k) {
-    const Vec3 place = somewhere(dice);
+    const Vec3 place = anywhere(dice);
     ASSERT_NEAR(signed_distance(mesh, place), signed_distance(ball, place), 2e-3);
   }
 }
@@ -175,11 +180,11 @@ TEST(Meshes, BodiesInOneFileThatOverlapAreOne) {
 RC_GTEST_PROP(Meshes, ChordsArePairsThatBeginAndEndOnTheSurface, (unsigned seed)) {
   std::mt19937 dice(seed);
   for (const bool coarse : {false, true}) {
-    const Vec3 origin = coarse ? on_grid(dice) : somewhere(dice);
-    const Vec3 other = coarse ? on_grid(dice) : somewhere(dice);
+    const Vec3 origin = coarse ? on_grid(dice) : anywhere(dice);
+    const Vec3 other = coarse ? on_grid(dice) : anywhere(dice);
     for (const Vec3& way : {Vec3(other - origin), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
       if (way.isZero(0.0)) continue;
-      for (const ShapeN<3>& body : bodies()) {
+      for (const ShapeN<3>& body : mesh_bodies()) {
         const std::vector<double> ends = chords(body, origin, way);
         RC_ASSERT(ends.size() % 2 == 0);
         RC_ASSERT(std::is_sorted(ends.begin(), ends.end()));
@@ -197,9 +202,9 @@ RC_GTEST_PROP(Meshes, ChordsArePairsThatBeginAndEndOnTheSurface, (unsigned seed)
 
 RC_GTEST_PROP(Meshes, DistanceIsThatOfTheNearestTriangle, (unsigned seed)) {
   std::mt19937 dice(seed);
-  const Vec3 place = somewhere(dice);
-  for (const ShapeN<3>& body : bodies()) {
-    const TriangleMesh& surface = *surface_of(Shape(body));
+  const Vec3 place = anywhere(dice);
+  for (const ShapeN<3>& body : mesh_bodies()) {
+    const TriangleMesh& surface = surface_in(body);
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < surface.size(); ++i) {
       nearest = std::min(nearest, (nearest_point(surface.triangle(i), place) - place).norm());
@@ -212,8 +217,8 @@ RC_GTEST_PROP(Meshes, DistanceIsThatOfTheNearestTriangle, (unsigned seed)) {
 TEST(Meshes, TheNearestPointOfATriangleIsNearerThanAnySample) {
   std::mt19937 dice(5);
   for (int k = 0; k < 200; ++k) {
-    const std::array<Vec3, 3> triangle{somewhere(dice), somewhere(dice), somewhere(dice)};
-    const Vec3 place = somewhere(dice);
+    const std::array<Vec3, 3> triangle{anywhere(dice), anywhere(dice), anywhere(dice)};
+    const Vec3 place = anywhere(dice);
     const double nearest = (nearest_point(triangle, place) - place).norm();
     double sampled = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= 50; ++i) {
@@ -281,8 +286,8 @@ TEST(MeshPlaces, TurnAsEigenDoes) {
   std::mt19937 dice(7);
   for (int k = 0; k < 100; ++k) {
     Mesh as;
-    as.rotation = Rotation{somewhere(dice), 90 * somewhere(dice).x()};
-    const Vec3 point = somewhere(dice);
+    as.rotation = Rotation{anywhere(dice), 90 * anywhere(dice).x()};
+    const Vec3 point = anywhere(dice);
     const Eigen::AngleAxisd turn(as.rotation->angle * std::numbers::pi / 180,
                                  as.rotation->axis.normalized());
     ASSERT_LT((placed({{point}, {}}, as).points.front() - turn * point).norm(), 1e-14);
