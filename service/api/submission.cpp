@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/scene/format/json_text.hpp"
 #include "engine/store/disk/sha256.hpp"
 #include "engine/store/files/new_folder.hpp"
 #include "service/http/http_head.hpp"
@@ -23,6 +22,15 @@ constexpr std::size_t kLongestKey = 128;
 constexpr std::string_view kSceneField = "scene";
 constexpr const char* kHowToSendFiles =
     "; send it along as a part of a form: curl -F scene=@SCENE.json -F mesh=@FILE";
+
+/// What a client calls a part, in which any byte may stand.
+std::string shown_name(const std::string& name) {
+  constexpr std::size_t kShown = 64;
+  std::string text = name.substr(0, kShown);
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return fmt::format("\"{}\"", text);
+}
 
 [[noreturn]] void refuse_submission(const std::string& why) {
   throw ApiError(ProblemType::bad_request, fmt::format("the form is no submission: {}", why));
@@ -60,9 +68,10 @@ SubmittedScene read_submission(const Request& request) {
       refuse_submission(
           fmt::format("the part {} is no file; the scene is the part called scene, and all "
                       "others are files with their names",
-                      excerpt(part.name)));
+                      shown_name(part.name)));
     }
-    if (known) refuse_submission(fmt::format("it has two files called {}", excerpt(part.filename)));
+    if (known)
+      refuse_submission(fmt::format("it has two files called {}", shown_name(part.filename)));
     result.files.push_back({part.filename, std::string(part.bytes)});
   }
   if (!text) refuse_submission("it has no part called scene");
@@ -74,7 +83,7 @@ SubmittedScene read_submission(const Request& request) {
 void require_named(const SubmittedScene& submitted, const std::vector<NamedPart>& named) {
   for (const NamedPart& file : submitted.files) {
     if (std::ranges::find(named, file.name, &NamedPart::name) != named.end()) continue;
-    refuse_submission(fmt::format("no mesh of the scene names the file {}", excerpt(file.name)));
+    refuse_submission(fmt::format("no mesh of the scene names the file {}", shown_name(file.name)));
   }
 }
 

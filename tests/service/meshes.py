@@ -110,6 +110,7 @@ class Meshes(unittest.TestCase):
         for parts in ([("scene", None, text), ("mesh", "ramp.stl", ramp(0.16)), ("mesh", "more.stl", ramp(0.16))],
                       [("scene", None, text), ("mesh", "ramp.stl", ramp(0.16)), ("mesh", "ramp.stl", ramp(0.16))],
                       [("scene", None, text), ("mesh", "ramp.stl", ramp(0.16)), ("label", None, b"x")],
+                      [("scene", None, text), ("mesh", "ramp.stl", ramp(0.16)), ("mesh", "\u00e4\x01.stl", b"x")],
                       [("scene", None, text), ("scene", None, text)],
                       [("mesh", "ramp.stl", ramp(0.16))], []):
             self.problem(self.post(*form(parts)), 400)
@@ -133,7 +134,7 @@ class Meshes(unittest.TestCase):
         self.problem(self.server.ask("POST", "/v1/studies", body, headers), 413)
 
     def test_a_file_name_leads_nowhere(self):
-        for name in ("../ramp.stl", "/tmp/ramp.stl", "scene.json", "job.json", "..", "a\\b.stl"):
+        for name in ("../ramp.stl", "/etc/ramp.stl", "scene.json", "job.json", "..", "a\\b.stl"):
             scene = json.loads(json.dumps(self.scene))
             scene["obstacles"][0]["file"] = name
             self.problem(self.post(*submission(scene, ramp(0.16), name)), 422)

@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "engine/scene/geometry/geometry.hpp"
 #include "engine/scene/geometry/mesh_faults.hpp"
+#include "engine/scene/geometry/solids.hpp"
 #include "tests/scene/meshes.hpp"
 
 namespace sluice {
@@ -231,6 +233,26 @@ TEST(Meshes, TheNearestPointOfATriangleIsNearerThanAnySample) {
     ASSERT_LE(nearest, sampled + 1e-12);
     ASSERT_GE(nearest, sampled - 0.2);
   }
+}
+
+TEST(Meshes, AreSolidsAsTheBodiesThatTheyMesh) {
+  constexpr double kSpacing = 0.1;
+  // A cube that stands against another: of both, the second is a mesh, or none is.
+  const Cuboid<3> first{Vec3(0, 0, 0), Vec3(1, 1, 1)}, second{Vec3(1, 0, 0), Vec3(1, 1, 1)};
+  const SolidsN<3> plain({first, second}, std::nullopt, kSpacing);
+  const SolidsN<3> meshed({first, as_shape(box_mesh(second.corner, second.size))}, std::nullopt,
+                          kSpacing);
+  std::mt19937 dice(9);
+  std::uniform_real_distribution<double> part(-0.2, 1.2);
+  for (int k = 0; k < 1000; ++k) {
+    const Vec3 place(2 * part(dice), part(dice), part(dice));
+    ASSERT_EQ(meshed.holds(place), plain.holds(place)) << place.transpose();
+    ASSERT_EQ(meshed.leaves_room(place, 0.15), plain.leaves_room(place, 0.15));
+    // Beside the seam the way out of one body ends in the other: then it is sought.
+    ASSERT_NEAR(meshed.depth(place, 0.5), plain.depth(place, 0.5), 0.02) << place.transpose();
+  }
+  EXPECT_NEAR(meshed.depth(Vec3(1.01, 0.5, 0.5), 0.45), 0.45, 1e-6) << "the seam is no way out";
+  EXPECT_EQ(meshed.depth(Vec3(1.5, 0.9, 0.5), 0.45), 1.0 - 0.9) << "exact where it is plain";
 }
 
 TEST(MeshFaults, NameTheEdgeOfAHole) {
