@@ -159,7 +159,8 @@ void add_submit_options(CLI::App& verb, SubmitArguments& arguments) {
 void add_submit(CLI::App& app) {
   auto arguments = std::make_shared<SubmitArguments>();
   arguments->watching.retry = kSubmitRetry;
-  CLI::App* verb = app.add_subcommand("submit", "Give a scene, with its meshes, to a service as a job");
+  CLI::App* verb =
+      app.add_subcommand("submit", "Give a scene, with its meshes, to a service as a job");
   add_submit_options(*verb, *arguments);
   add_service_options(*verb, arguments->service);
   add_watch_options(*verb, arguments->watching);
