@@ -66,9 +66,7 @@ class Damage : public testing::Test {
   std::string older_digest_ = physics_digest(make_checkpoint(100, 2000));
 };
 
-TEST_F(Damage, OfAnyBitIsDetectedAndTheOlderCheckpointUsed) {
-  flip_bits_before(good_.size());
-}
+TEST_F(Damage, OfAnyBitIsDetectedAndTheOlderCheckpointUsed) { flip_bits_before(good_.size()); }
 
 TEST_F(Damage, OfAnyBitInTheFirst8KiBIsDetectedAndTheOlderCheckpointUsed) {
   flip_bits_before(8192);
