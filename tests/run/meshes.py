@@ -27,7 +27,7 @@ class Meshes(Sandbox):
         super().assert_tidy(folder)
 
     def test_kills_change_no_bit(self):
-        self.assert_kills_change_no_bit(scene_with_mesh(end_time=6.0), 6)
+        self.assert_kills_change_no_bit(scene_with_mesh(end_time=2.5), 6)
 
     def test_the_verbs_read_the_mesh_beside_the_scene(self):
         path = self.write_scene(scene_with_mesh())
