@@ -98,10 +98,10 @@ void adopt_scene(JobFolder& folder, const std::string& text, const Scene& scene)
   if (canonical_text(present) != canonical_text(scene)) folder.publish_text(path, text);
 }
 
-void prepare_folder(const std::filesystem::path& root, const std::string& text,
-                    const Scene& scene) {
+void prepare_folder(const std::filesystem::path& root, const std::string& text, const Scene& scene,
+                    const std::vector<NamedPart>& parts) {
   if (!JobFolder::holds_job(root)) {
-    static_cast<void>(JobFolder::create(root, text));
+    static_cast<void>(JobFolder::create(root, text, parts));
     return;
   }
   JobFolder folder = JobFolder::open(root);

@@ -14,6 +14,7 @@
 
 #include "cli/checks.hpp"
 #include "cli/json_text.hpp"
+#include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/scene/checks/parse.hpp"
 #include "engine/scene/forecast/estimate.hpp"
@@ -95,7 +96,8 @@ std::optional<Json> text_facts(const std::string& path) {
   const Json object = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!object.is_object()) return {};
   Json facts{{"file", path}};
-  if (const auto scene = parse_scene(text, StabilityCheck::skip).scene) {
+  if (const auto scene =
+          parse_scene(text, StabilityCheck::skip, SceneOrigin::user, parts_beside(path)).scene) {
     const Estimate needs = estimate(*scene);
     facts["kind"] = "scene";
     facts["name"] = scene->name;

@@ -34,6 +34,7 @@ struct ReportArguments {
   double tau = kComparisonTau;
   ReportFormat format = ReportFormat::text;
   Quantity colour = Quantity::pressure;
+  Look look = Look::rendered;
   bool json = false;
   std::string outcome;  ///< JSON, for a run that left none
 };
@@ -53,7 +54,8 @@ std::string formatted(const ReportArguments& arguments, const std::filesystem::p
     case ReportFormat::html:
       return report_html(report, job.series, picture_snapshots(folder, report));
     case ReportFormat::apng:
-      if (std::string moving = animation_png(folder, report, arguments.colour); !moving.empty()) {
+      if (std::string moving = animation_png(folder, report, arguments.colour, arguments.look);
+          !moving.empty()) {
         return moving;
       }
       throw CommandEnd(ExitCode::usage,
@@ -157,6 +159,7 @@ void add_report(CLI::App& app) {
       {"svg", ReportFormat::svg},           {"apng", ReportFormat::apng}};
   const std::map<std::string, Quantity> quantities{{"pressure", Quantity::pressure},
                                                    {"speed", Quantity::speed}};
+  const std::map<std::string, Look> looks{{"rendered", Look::rendered}, {"section", Look::section}};
   CLI::Option* format =
       verb->add_option(
               "--format", arguments->format,
@@ -165,6 +168,11 @@ void add_report(CLI::App& app) {
           ->transform(one_of(formats));
   verb->add_option("--colour", arguments->colour, "What colours an animation's particles")
       ->transform(one_of(quantities));
+  verb->add_option(
+          "--view", arguments->look,
+          "How an animation shows a scene of space: rendered, as it is seen from one side, "
+          "or section, a cut through the middle")
+      ->transform(one_of(looks));
   verb->add_flag("--json", arguments->json, "The same as --format json")->excludes(format);
   verb->add_option("--tau", arguments->tau, "Time filter of pressures, s")
       ->check(number_above_zero())

@@ -63,7 +63,7 @@ OpenedJob make_job(const fs::path& scene_path, const std::string& wanted_folder)
   SceneFile file = read_scene(scene_path);
   const fs::path root = wanted_folder.empty() ? folder_name(file.scene.name) : wanted_folder;
   if (!JobFolder::holds_job(root)) {
-    return {JobFolder::create(root, file.text), std::move(file.scene)};
+    return {JobFolder::create(root, file.text, file.parts), std::move(file.scene)};
   }
   JobFolder folder = JobFolder::open(root);
   adopt_scene(folder, file.text, file.scene);

@@ -54,17 +54,24 @@ std::string read_scene_bytes(const std::filesystem::path& path) {
                                path == "-" ? "stdin" : path.string(), kMaxSceneBytes >> 10U));
 }
 
+SceneParts parts_beside(const std::filesystem::path& scene) {
+  return parts_in(scene.parent_path(), Links::follow);
+}
+
 Scene job_scene_or_end(std::string_view text, const std::filesystem::path& where) {
-  ParseResult result = parse_job_scene(text);
+  ParseResult result = parse_job_scene(text, parts_in(where.parent_path(), Links::refuse));
   require_scene(result, where);
   return *std::move(result.scene);
 }
 
 SceneFile read_scene(const std::filesystem::path& path) {
   const std::string text = read_scene_bytes(path);
-  ParseResult result = parse_scene(text);
+  const SceneParts parts = parts_beside(path);
+  ParseResult result = parse_scene(text, parts);
   require_scene(result, path == "-" ? "stdin" : path);
-  return {text_for_folder(text), *std::move(result.scene), std::move(result.warnings)};
+  std::vector<NamedPart> named = parts_of(*result.scene, parts);
+  return {text_for_folder(text, parts), *std::move(result.scene), std::move(result.warnings),
+          std::move(named)};
 }
 
 std::string warnings_text(const std::vector<Problem>& warnings, const std::string& where) {

@@ -7,6 +7,7 @@
 
 #include "engine/scene/checks/parse.hpp"
 #include "engine/scene/model/scene.hpp"
+#include "engine/store/files/scene_parts.hpp"
 
 namespace sluice {
 
@@ -15,7 +16,12 @@ struct SceneFile {
   std::string text;
   Scene scene;
   std::vector<Problem> warnings;
+  std::vector<NamedPart> parts = {};  ///< the files that it names
 };
+
+/// The files that a scene of a user names: they lie beside it, or in this folder with a scene from
+/// stdin.
+[[nodiscard]] SceneParts parts_beside(const std::filesystem::path& scene);
 
 /// A scene's text as it is, "-" from stdin. Throws CommandEnd: usage when it cannot be read,
 /// invalid_scene when it is longer than a scene may be.

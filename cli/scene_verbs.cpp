@@ -133,7 +133,7 @@ void show_plan(const SceneArguments& arguments) {
 
 /// All problems and warnings as JSON on stdout: for editors and scripts.
 void validate_as_json(const std::string& path) {
-  ParseResult result = parse_scene(read_scene_bytes(path));
+  ParseResult result = parse_scene(read_scene_bytes(path), parts_beside(path));
   if (result.scene && estimate(*result.scene).fluid_particles <= kTrialParticles) {
     if (auto problem = problem_when_filled(*result.scene)) {
       result.problems.push_back(*std::move(problem));

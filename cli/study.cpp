@@ -13,6 +13,7 @@
 #include "cli/checks.hpp"
 #include "cli/client/service_study.hpp"
 #include "cli/run_pool.hpp"
+#include "cli/scene_file.hpp"
 #include "cli/verbs.hpp"
 #include "engine/execute/local_executor.hpp"
 #include "engine/report/study_row.hpp"
@@ -41,16 +42,24 @@ struct StudyArguments {
   [[nodiscard]] fs::path file() const { return study; }
 };
 
-StudyPlan read_study(const fs::path& file) {
+/// A study with the files that its scenes name, which lie beside it.
+struct StudyFile {
+  StudyPlan plan;
+  SceneParts parts;
+};
+
+StudyFile read_study(const fs::path& file) {
   std::string path = file.string();
   if (const std::string wrong = existing_file()(path); !wrong.empty()) {
     throw CommandEnd(ExitCode::usage, wrong);
   }
   const fs::path beside = file.parent_path();
-  StudyPlan plan = plan_study(read_text(file, kMaxSceneBytes + 1), [&](const std::string& name) {
-    return read_text(beside / name, kMaxSceneBytes + 1);
-  });
-  if (plan.problems.empty()) return plan;
+  const SceneParts parts = parts_beside(file);
+  StudyPlan plan = plan_study(
+      read_text(file, kMaxSceneBytes + 1),
+      [&](const std::string& name) { return read_text(beside / name, kMaxSceneBytes + 1); },
+      kMaxStudyRuns, SceneOrigin::user, parts);
+  if (plan.problems.empty()) return {std::move(plan), parts};
   for (const Problem& problem : plan.problems) {
     std::fputs(fmt::format("{}: {}: {}\n", file.string(),
                            problem.pointer.empty() ? "(the whole study)" : problem.pointer,
@@ -130,8 +139,10 @@ StudyFolder entered(const fs::path& root) {
 /// Runs what is not done yet, several at once, and says how each ended.
 class StudyRunner {
  public:
-  StudyRunner(const StudyPlan& plan, const StudyFolder& folder, int cores, RunPool& pool)
+  StudyRunner(const StudyPlan& plan, const SceneParts& parts, const StudyFolder& folder, int cores,
+              RunPool& pool)
       : plan_(plan),
+        parts_(parts),
         folder_(folder),
         pool_(pool),
         at_once_(static_cast<std::size_t>(std::max(1, cores / plan.study.threads))) {}
@@ -170,7 +181,7 @@ class StudyRunner {
 
   void start(std::size_t number) {
     const StudyRun& run = plan_.runs[number];
-    prepare_folder(folder_.run(run), run.scene_text, run.scene);
+    prepare_folder(folder_.run(run), run.scene_text, run.scene, parts_of(run.scene, parts_));
     pool_.start(number, folder_.run(run), folder_.log(run), plan_.study.threads);
   }
 
@@ -198,6 +209,7 @@ class StudyRunner {
   }
 
   const StudyPlan& plan_;
+  const SceneParts& parts_;
   const StudyFolder& folder_;
   RunPool& pool_;
   std::size_t at_once_;
@@ -269,7 +281,7 @@ void study(StudyArguments arguments) {
   if (arguments.service.watch || !arguments.service.key.empty()) {
     throw CommandEnd(ExitCode::usage, "--watch and --idempotency-key go with --server");
   }
-  StudyPlan plan = read_study(arguments.file());
+  auto [plan, parts] = read_study(arguments.file());
   print_warnings(arguments.file(), plan.runs);
   plan.study.targets.insert(plan.study.targets.end(), arguments.below.begin(),
                             arguments.below.end());
@@ -286,7 +298,8 @@ void study(StudyArguments arguments) {
     const int cores = arguments.cores > 0
                           ? arguments.cores
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    finished = told_from(root, [&] { return StudyRunner(plan, folder, cores, pool).run_all(); });
+    StudyRunner runner(plan, parts, folder, cores, pool);
+    finished = told_from(root, [&] { return runner.run_all(); });
   }
   const StudyResult result = told_from(root, [&] {
     StudyResult rows = folder.read(plan);

@@ -12,6 +12,7 @@
 
 #include "cli/json_text.hpp"
 #include "cli/verbs.hpp"
+#include "engine/scene/format/text_rules.hpp"
 #include "engine/store/disk/apart.hpp"
 #include "engine/store/disk/errors.hpp"
 #include "engine/store/files/job_folder.hpp"
@@ -71,6 +72,10 @@ void fetch(ServiceClient& service, const std::string& id, const fs::path& folder
     } else if (path == paths.outcome()) {
       write_file(path, known_outcome(service, id));
     }
+  }
+  for (const std::string& name : there) {
+    if (!are_allowed(name, Characters::mesh)) continue;
+    write_file(paths.part(name), service.get(job_target(id, "/files/" + name)).body);
   }
   fs::create_directory(paths.frames());
   for (const std::string& name : there) {

@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cli/checks.hpp"
 #include "cli/client/job_text.hpp"
+#include "cli/client/scene_form.hpp"
 #include "cli/client/service_client.hpp"
 #include "cli/client/service_study.hpp"
 #include "cli/client/watch.hpp"
@@ -45,13 +47,20 @@ std::string query_of(const SubmitArguments& arguments) {
   return query;
 }
 
-HttpRequest request_of(const SubmitArguments& arguments, const std::string& key) {
+struct Submission {
+  std::string scene;
   HttpRequest request;
+};
+
+Submission submission_of(const SubmitArguments& arguments, const std::string& key) {
+  Submission result{read_scene_bytes(arguments.scene), {}};
+  SceneForm form = form_of(result.scene, arguments.scene);
+  HttpRequest& request = result.request;
   request.method = "POST";
   request.target = "/v1/jobs" + query_of(arguments);
-  request.headers = {{"Content-Type", "application/json"}, {"Idempotency-Key", key}};
-  request.body = read_scene_bytes(arguments.scene);
-  return request;
+  request.headers = {{"Content-Type", std::move(form.type)}, {"Idempotency-Key", key}};
+  request.body = std::move(form.body);
+  return result;
 }
 
 void print_names(std::string_view title, const Json& items) {
@@ -107,12 +116,12 @@ void print_submitted(const ServiceClient& service, const HttpReply& reply, const
 void submit(const SubmitArguments& arguments) {
   ServiceClient service(arguments.service);
   const std::string key = arguments.key.empty() ? new_key() : arguments.key;
-  const HttpRequest request = request_of(arguments, key);
+  const Submission submission = submission_of(arguments, key);
   const std::string subject = arguments.scene == "-" ? "stdin" : arguments.scene;
   const Patience patience = patience_on_stderr(
       arguments.watching.retry,
       fmt::format("submit it again with --idempotency-key {}, which makes no second job", key));
-  const HttpReply reply = service.ask_patiently(request, patience, subject);
+  const HttpReply reply = service.ask_patiently(submission.request, patience, subject);
   const Json answer = service.object_of(reply);
   if (arguments.json) {
     print_body(reply);
@@ -120,7 +129,7 @@ void submit(const SubmitArguments& arguments) {
   } else if (arguments.dry_run) {
     print_dry_run(subject, answer);
   } else {
-    print_submitted(service, reply, answer, subject, request.body);
+    print_submitted(service, reply, answer, subject, submission.scene);
   }
   if (!arguments.watch) return;
   WatchOptions watching = arguments.watching;
@@ -150,7 +159,8 @@ void add_submit_options(CLI::App& verb, SubmitArguments& arguments) {
 void add_submit(CLI::App& app) {
   auto arguments = std::make_shared<SubmitArguments>();
   arguments->watching.retry = kSubmitRetry;
-  CLI::App* verb = app.add_subcommand("submit", "Give a scene to a service as a job");
+  CLI::App* verb =
+      app.add_subcommand("submit", "Give a scene, with its meshes, to a service as a job");
   add_submit_options(*verb, *arguments);
   add_service_options(*verb, arguments->service);
   add_watch_options(*verb, arguments->watching);

@@ -1,7 +1,5 @@
 #include "engine/draw/picture.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,42 +8,6 @@
 
 namespace sluice {
 namespace {
-
-struct Colour {
-  double red, green, blue;
-};
-
-/// viridis (matplotlib, CC0) at ninths; straight between.
-constexpr std::array<Colour, 10> kViridis{{{68, 1, 84},
-                                           {72, 40, 120},
-                                           {62, 74, 137},
-                                           {49, 104, 142},
-                                           {38, 130, 142},
-                                           {31, 158, 137},
-                                           {53, 183, 121},
-                                           {109, 205, 89},
-                                           {180, 222, 44},
-                                           {253, 231, 37}}};
-
-Rgb viridis(double share) {
-  const double place = std::clamp(share, 0.0, 1.0) * (kViridis.size() - 1);
-  const auto before = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
-  const double part = place - static_cast<double>(before);
-  const Colour& a = kViridis[before];
-  const Colour& b = kViridis[before + 1];
-  const auto between = [part](double from, double to) {
-    return static_cast<std::uint8_t>(std::lround(from + part * (to - from)));
-  };
-  return {between(a.red, b.red), between(a.green, b.green), between(a.blue, b.blue)};
-}
-
-std::uint8_t index_of(double value, const PictureView& how) {
-  const double share = std::clamp((value - how.low) / (how.high - how.low), 0.0, 1.0);
-  return static_cast<std::uint8_t>(kFirstColour +
-                                   std::lround(share * (kLastColour - kFirstColour)));
-}
-
-double pixels_per_metre(const PictureView& how) { return how.width / how.view.size().x(); }
 
 /// The middle of a pixel, m.
 Vec2 place_of(int column, int row, const PictureView& how) {
@@ -123,20 +85,9 @@ Vec in_section(const Vec2& place, const Scene& scene, const PictureView& how) {
   return Vec3(place.x(), place.y(), how.section);
 }
 
-std::array<Rgb, 256> make_palette() {
-  std::array<Rgb, 256> palette{};
-  palette[kNothing] = {246, 248, 250};
-  for (int i = kFirstColour; i <= kLastColour; ++i) {
-    palette[static_cast<std::size_t>(i)] =
-        viridis((i - kFirstColour) / static_cast<double>(kLastColour - kFirstColour));
-  }
-  palette[kSolid] = {140, 147, 156};
-  palette[kGate] = {207, 74, 36};
-  palette[kInk] = {27, 31, 36};
-  return palette;
-}
-
 }  // namespace
+
+double pixels_per_metre(const PictureView& how) { return how.width / how.view.size().x(); }
 
 Picture blank_picture(const PictureView& how) {
   Picture picture;
@@ -178,22 +129,14 @@ void draw_particles(Picture& picture, const Snapshot& frame, const PictureView& 
   for (std::size_t i = 0; i < frame.size(); ++i) {
     const Vec place = frame.position_of(i);
     const bool cut = place.size() == 2 || std::abs(place[2] - how.section) <= 0.5 * how.diameter;
-    if (cut) canvas.disc(place.head<2>(), index_of(coloured_value(frame, i, how.quantity), how));
+    if (cut)
+      canvas.disc(place.head<2>(),
+                  flat_colour(how.share_of(coloured_value(frame, i, how.quantity))));
   }
 }
 
 float coloured_value(const Snapshot& frame, std::size_t i, Quantity quantity) {
   return quantity == Quantity::pressure ? frame.pressure[i] : frame.velocity_of(i).stableNorm();
-}
-
-const std::array<Rgb, 256>& picture_palette() {
-  static const std::array<Rgb, 256> palette = make_palette();
-  return palette;
-}
-
-std::string colour_of(double share) {
-  const Rgb colour = viridis(share);
-  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
 }  // namespace sluice

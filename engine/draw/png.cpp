@@ -16,7 +16,7 @@ enum class Ground { transparent, opaque };
 std::string encode_png(const Picture& picture, Ground ground) {
   std::array<std::uint8_t, 4 * 256> palette{};
   for (std::size_t i = 0; i < 256; ++i) {
-    const Rgb colour = picture_palette()[i];
+    const Rgb colour = colours_of(picture.palette)[i];
     palette[4 * i] = colour.red;
     palette[4 * i + 1] = colour.green;
     palette[4 * i + 2] = colour.blue;

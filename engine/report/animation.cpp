@@ -22,14 +22,14 @@ constexpr int kLeast = 480;     ///< pixels in which the strip has room
 constexpr int kLength = 12000;  ///< ms
 
 /// The particles' box over all snapshots, where the scene has no tank that tells the view.
-std::optional<Box2> moving_box(const std::vector<fs::path>& files) {
-  std::optional<Box2> box;
+std::optional<Box> moving_box(const std::vector<fs::path>& files) {
+  std::optional<Box> box;
   for (const fs::path& path : files) {
     const auto frame = try_snapshot(path);
     if (!frame) continue;
     const auto one = particle_box({&*frame, 1});
     if (!one) continue;
-    box = box ? Box2{box->min.cwiseMin(one->min), box->max.cwiseMax(one->max)} : *one;
+    box = box ? Box{box->min.cwiseMin(one->min), box->max.cwiseMax(one->max)} : *one;
   }
   return box;
 }
@@ -43,6 +43,7 @@ std::string end_text(const PictureView& how) {
 /// The picture with a strip above it: time left, scale of colours right.
 Picture with_strip(const Picture& picture, const PictureView& how, double time) {
   Picture whole;
+  whole.palette = picture.palette;
   whole.width = std::max(picture.width, kLeast);
   whole.height = picture.height + kStrip;
   const auto width = static_cast<std::size_t>(whole.width);
@@ -63,8 +64,7 @@ Picture with_strip(const Picture& picture, const PictureView& how, double time) 
   draw_text(whole, right, kSpace, end);
   for (int row = kSpace; row < kSpace + kLetterHeight; ++row) {
     for (int k = 0; k < kScale; ++k) {
-      *at(left + k, row) =
-          static_cast<std::uint8_t>(kFirstColour + k * (kLastColour - kFirstColour) / (kScale - 1));
+      *at(left + k, row) = colour_in(picture.palette, k / static_cast<double>(kScale - 1));
     }
   }
   return whole;
@@ -72,31 +72,25 @@ Picture with_strip(const Picture& picture, const PictureView& how, double time) 
 
 }  // namespace
 
-std::string animation_png(const fs::path& folder, const Report& report, Quantity quantity) {
+std::string animation_png(const fs::path& folder, const Report& report, Quantity quantity,
+                          Look look) {
   const Scene& scene = report.scene;
   std::vector<fs::path> files = spread_files(folder, kMostAnimated);
   std::erase_if(files, [](const fs::path& path) { return !try_snapshot(path); });
   if (files.empty()) return {};
-  PictureView how;
-  how.view = picture_view(scene, scene.tank ? std::nullopt : moving_box(files));
-  how.section = picture_section(scene);
-  how.diameter = scene.method.spacing;
-  how.quantity = quantity;
+  FramePainter painter(scene, scene.tank ? std::nullopt : moving_box(files), look);
+  painter.how.quantity = quantity;
   // The colours of the report's pictures.
-  how.high = colour_end(picture_snapshots(folder, report), quantity);
-  const Vec2 size = how.view.size();
-  how.width =
+  painter.how.high = colour_end(picture_snapshots(folder, report), quantity);
+  const Vec2 size = painter.how.view.size();
+  painter.how.width =
       std::clamp(static_cast<int>(kAnimationHeight * size.x() / size.y()), 16, kAnimationWidth);
-  const Picture solids = draw_solids(scene, how);
   const auto count = static_cast<std::uint32_t>(files.size());
   PngAnimation animation(
       count, static_cast<std::uint16_t>(std::clamp<std::uint32_t>(kLength / count, 20, 500)));
   for (const fs::path& path : files) {
-    Picture picture = solids;
     const Snapshot frame = read_snapshot(path);
-    draw_gate(picture, scene, how, frame.time);
-    draw_particles(picture, frame, how);
-    animation.add(with_strip(picture, how, frame.time));
+    animation.add(with_strip(painter.paint(frame), painter.how, frame.time));
   }
   return animation.take();
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/draw/picture.hpp"
+#include "engine/report/frame_painter.hpp"
 #include "engine/report/report.hpp"
 
 namespace sluice {
@@ -17,6 +17,6 @@ inline constexpr int kAnimationHeight = 600;
 /// seconds: solids grey, the gate red, each with its time and the scale of colours. Reads one
 /// snapshot at a time. Empty where there is none that can be read.
 [[nodiscard]] std::string animation_png(const std::filesystem::path& folder, const Report& report,
-                                        Quantity quantity);
+                                        Quantity quantity, Look look = Look::rendered);
 
 }  // namespace sluice

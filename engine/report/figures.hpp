@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/draw/chart.hpp"
+#include "engine/report/frame_painter.hpp"
 #include "engine/report/report.hpp"
 
 namespace sluice {
@@ -18,9 +19,10 @@ inline constexpr std::size_t kMostCharts = 64;
 [[nodiscard]] std::vector<Chart> report_charts(const Report& report,
                                                const std::vector<Series>& series);
 
-/// A picture of each frame with axes in metres and a common scale of pressures, as SVGs that hold
-/// the pixels as PNG.
+/// A picture of each frame with a common scale of pressures, as SVGs that hold the pixels as PNG;
+/// with axes in metres but for a rendered one.
 [[nodiscard]] std::vector<std::string> picture_svgs(const Report& report,
-                                                    const std::vector<Snapshot>& frames);
+                                                    const std::vector<Snapshot>& frames,
+                                                    Look look = Look::section);
 
 }  // namespace sluice

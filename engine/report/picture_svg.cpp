@@ -56,7 +56,7 @@ std::string axes(const PlotArea& plot) {
 }
 
 /// The scale of colours above the picture's right end, in `unit` Pa or m/s.
-std::string colour_bar(const PlotArea& plot, std::size_t number, double high, double unit,
+std::string colour_bar(const PlotArea& plot, const std::string& name, double high, double unit,
                        std::string_view label) {
   const double x = std::max(kLeft + plot.width, kLeft + 300.0) - kBarWidth;
   std::string stops;
@@ -68,13 +68,37 @@ std::string colour_bar(const PlotArea& plot, std::size_t number, double high, do
       "<linearGradient id=\"colours-{0}\">{1}</linearGradient>\n"
       "<rect x=\"{2:.1f}\" y=\"26\" width=\"{3}\" height=\"10\" fill=\"url(#colours-{0})\"/>\n"
       "<text x=\"{4:.1f}\" y=\"35.5\" text-anchor=\"end\">{5}</text>\n",
-      number, stops, x, kBarWidth, x - 9.0, label);
+      name, stops, x, kBarWidth, x - 9.0, label);
   for (const double place : ticks({"", 0.0, high / unit}, 4)) {
     text += fmt::format("<text x=\"{:.1f}\" y=\"20\" text-anchor=\"middle\">{}</text>\n",
                         x + kBarWidth * place * unit / high, tick_text(place));
   }
   return text;
 }
+
+/// The scale of colours and the title of a report's pictures.
+struct PictureWords {
+  double time_unit = 1.0;  ///< s
+  double unit = 1.0;       ///< Pa
+  bool scaled = false;
+  bool kilo = false;
+
+  PictureWords(const Scene& scene, double high) {
+    const double gravity = scene.method.gravity.norm();
+    scaled = scene.scales && gravity > 0.0;
+    if (scaled) {
+      unit = scene.method.reference_density * gravity * scene.scales->height;
+      time_unit = std::sqrt(scene.scales->height / gravity);
+    }
+    kilo = !scaled && high >= 2000.0;
+    if (kilo) unit = 1e3;
+  }
+  [[nodiscard]] std::string title(double time) const {
+    return scaled ? fmt::format("T = {:.2f} (t = {:.4g} s)", time / time_unit, time)
+                  : fmt::format("t = {:.4g} s", time);
+  }
+  [[nodiscard]] std::string_view label() const { return scaled ? "P" : kilo ? "p, kPa" : "p, Pa"; }
+};
 
 std::string image(const PlotArea& plot, const Picture& picture) {
   return fmt::format(
@@ -85,41 +109,30 @@ std::string image(const PlotArea& plot, const Picture& picture) {
 
 }  // namespace
 
-std::vector<std::string> picture_svgs(const Report& report, const std::vector<Snapshot>& frames) {
-  const Scene& scene = report.scene;
-  const double gravity = scene.method.gravity.norm();
-  const bool scaled = scene.scales && gravity > 0.0;
-  const double unit =
-      scaled ? scene.method.reference_density * gravity * scene.scales->height : 1.0;
-  const double time = scaled ? std::sqrt(scene.scales->height / gravity) : 1.0;
-  PictureView how;
-  how.view = picture_view(scene, particle_box(frames));
-  const PlotArea plot = plot_of(how.view);
-  how.section = picture_section(scene);
-  how.diameter = scene.method.spacing;
-  how.high = colour_end(frames, how.quantity);
-  how.width = std::clamp(static_cast<int>(1.5 * plot.width), 64, 1000);
-  const Picture solids = draw_solids(scene, how);
-  const bool kilo = !scaled && how.high >= 2000.0;
+std::vector<std::string> picture_svgs(const Report& report, const std::vector<Snapshot>& frames,
+                                      Look look) {
+  FramePainter painter(report.scene, particle_box(frames), look);
+  const PlotArea plot = plot_of(painter.how.view);
+  painter.how.high = colour_end(frames, painter.how.quantity);
+  painter.how.width = std::clamp(static_cast<int>(1.5 * plot.width), 64, 1000);
+  const PictureWords words(report.scene, painter.how.high);
+  // Seen from one side, lengths along x and z are shortened, and an axis would say nothing.
+  const bool to_scale = look == Look::section || report.scene.dimensions() == 2;
   std::vector<std::string> svgs;
   for (const Snapshot& frame : frames) {
-    const std::string title =
-        scaled ? fmt::format("T = {:.2f} (t = {:.4g} s)", frame.time / time, frame.time)
-               : fmt::format("t = {:.4g} s", frame.time);
+    const std::string title = words.title(frame.time);
     std::string text = fmt::format(
         "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" "
         "role=\"img\">\n<title>Particles at {}, coloured by pressure</title>\n"
         "<text class=\"title\" x=\"{}\" y=\"35.5\">{}</text>\n",
-        kWidth, kTop + plot.height + kBottom, title, kLeft, title);
-    text += fmt::format("<rect class=\"canvas\" {}/>\n", plot.rectangle());
-    Picture picture = solids;
-    draw_gate(picture, scene, how, frame.time);
-    draw_particles(picture, frame, how);
-    text += image(plot, picture) + axes(plot);
-    text += colour_bar(plot, svgs.size(), how.high, kilo ? 1e3 : unit,
-                       scaled ? "P" : (kilo ? "p, kPa" : "p, Pa"));
-    text += fmt::format("<rect class=\"frame\" {}/>\n</svg>\n", plot.rectangle());
-    svgs.push_back(std::move(text));
+        kWidth, kTop + plot.height + (to_scale ? kBottom : kRight), title, kLeft, title);
+    if (to_scale) text += fmt::format("<rect class=\"canvas\" {}/>\n", plot.rectangle());
+    text += image(plot, painter.paint(frame));
+    if (to_scale) text += axes(plot);
+    text += colour_bar(plot, fmt::format("{}-{}", to_scale ? "section" : "view", svgs.size()),
+                       painter.how.high, words.unit, words.label());
+    if (to_scale) text += fmt::format("<rect class=\"frame\" {}/>\n", plot.rectangle());
+    svgs.push_back(text + "</svg>\n");
   }
   return svgs;
 }

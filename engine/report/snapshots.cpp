@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Times of the pictures in the experiment's paper, T.
-
 std::optional<double> time_of_highest_pressure(const Report& report) {
   std::optional<double> at;
   double highest = 0.0;
@@ -36,15 +34,6 @@ std::uint64_t index_in(const fs::path& path) {
   const auto digits = std::min(name.find_first_of("0123456789"), name.size());
   std::from_chars(name.data() + digits, name.data() + name.size(), index);
   return index;
-}
-
-void add_box(std::optional<Box2>& to, const Box2& box) {
-  if (!to) {
-    to = box;
-    return;
-  }
-  to->min = to->min.cwiseMin(box.min);
-  to->max = to->max.cwiseMax(box.max);
 }
 
 }  // namespace
@@ -99,39 +88,44 @@ std::optional<Snapshot> try_snapshot(const fs::path& path) {
   }
 }
 
-std::optional<Box2> particle_box(std::span<const Snapshot> frames) {
-  std::optional<Box2> box;
+std::optional<Box> particle_box(std::span<const Snapshot> frames) {
+  std::optional<Box> box;
   for (const Snapshot& frame : frames) {
     for (std::size_t i = 0; i < frame.size(); ++i) {
-      const Vec2 place = frame.position_of(i).head<2>();
-      if (place.allFinite()) add_box(box, {place, place});
+      const Vec place = frame.position_of(i);
+      if (!place.allFinite()) continue;
+      if (!box) box = Box{place, place};
+      box->take_in(place);
     }
   }
   return box;
 }
 
-Box2 picture_view(const Scene& scene, const std::optional<Box2>& particles) {
-  if (scene.tank) {
-    const Vec2 size(scene.tank->width, scene.tank->height);
-    const double wall = std::max(scene.method.support(), 0.008 * size.maxCoeff());
-    const double above = scene.tank->open_top ? 0.0 : wall;
-    return {Vec2(-wall, -wall), size + Vec2(wall, above)};
+Box picture_room(const Scene& scene, const std::optional<Box>& particles) {
+  if (scene.tank) return scene.tank->interior();
+  const int dimensions = scene.dimensions();
+  if (!particles) {
+    return {filled_vec<kAnyDim>(0.0, dimensions), filled_vec<kAnyDim>(1.0, dimensions)};
   }
-  std::optional<Box2> box = particles;
-  if (box) {
-    // Of ground that goes on for ever as much as lies about the fluid.
-    const Vec2 around = Vec2::Constant(box->size().maxCoeff());
-    const Box2 near{box->min - around, box->max + around};
-    for (const Shape& obstacle : scene.obstacles) {
-      const Box whole = bounds(obstacle);
-      const Box2 part{whole.min.head<2>().cwiseMax(near.min),
-                      whole.max.head<2>().cwiseMin(near.max)};
-      if ((part.min.array() <= part.max.array()).all()) add_box(box, part);
-    }
+  Box box = *particles;
+  // Of ground that goes on for ever as much as lies about the fluid.
+  const Box near = grown(box, box.size().maxCoeff());
+  for (const Shape& obstacle : scene.obstacles) {
+    const Box whole = bounds(obstacle);
+    if (!overlap(whole, near)) continue;
+    box.take_in(whole.min.cwiseMax(near.min));
+    box.take_in(whole.max.cwiseMin(near.max));
   }
-  if (!box) return {Vec2::Zero(), Vec2::Ones()};
-  const Vec2 margin = Vec2::Constant(std::max(scene.method.spacing, 0.03 * box->size().maxCoeff()));
-  return {box->min - margin, box->max + margin};
+  return grown(box, std::max(scene.method.spacing, 0.03 * box.size().maxCoeff()));
+}
+
+Box2 picture_view(const Scene& scene, const std::optional<Box>& particles) {
+  const Box room = picture_room(scene, particles);
+  Box2 view{room.min.head<2>(), room.max.head<2>()};
+  if (!scene.tank) return view;
+  const double wall = std::max(scene.method.support(), 0.008 * view.size().maxCoeff());
+  const double above = scene.tank->open_top ? 0.0 : wall;
+  return {view.min - Vec2::Constant(wall), view.max + Vec2(wall, above)};
 }
 
 double picture_section(const Scene& scene) {

@@ -27,11 +27,15 @@ namespace sluice {
 /// Nothing where the file cannot be read: a report without one of its pictures is worth having.
 [[nodiscard]] std::optional<Snapshot> try_snapshot(const std::filesystem::path& path);
 
-/// The box of x and y around all particles that are somewhere; nothing when none is.
-[[nodiscard]] std::optional<Box2> particle_box(std::span<const Snapshot> frames);
+/// The box around all particles that are somewhere; nothing when none is.
+[[nodiscard]] std::optional<Box> particle_box(std::span<const Snapshot> frames);
 
-/// The tank with its walls, or the box around particles and obstacles.
-[[nodiscard]] Box2 picture_view(const Scene& scene, const std::optional<Box2>& particles);
+/// What of a scene is worth showing, m: the inside of the tank, or the box around particles and the
+/// solids near them.
+[[nodiscard]] Box picture_room(const Scene& scene, const std::optional<Box>& particles);
+
+/// The same as x and y, with the tank's walls.
+[[nodiscard]] Box2 picture_view(const Scene& scene, const std::optional<Box>& particles);
 
 /// Where pictures cut a scene of space: in the middle of the tank or of the first fluid, as z, m.
 [[nodiscard]] double picture_section(const Scene& scene);

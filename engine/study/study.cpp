@@ -153,7 +153,7 @@ std::vector<json> base_scenes(const Study& study, const SceneLoader& load, Probl
 }  // namespace
 
 StudyPlan plan_study(std::string_view text, const SceneLoader& load, std::size_t most,
-                     SceneOrigin origin) {
+                     SceneOrigin origin, const SceneParts& parts) {
   StudyPlan plan;
   Problems problems;
   std::vector<FormerWord> former;
@@ -165,7 +165,7 @@ StudyPlan plan_study(std::string_view text, const SceneLoader& load, std::size_t
     check_values(plan.study, most, problems);
     if (problems.empty()) {
       std::vector<json> bases = base_scenes(plan.study, load, problems);
-      if (problems.empty()) make_runs(plan, std::move(bases), origin, problems);
+      if (problems.empty()) make_runs(plan, std::move(bases), {origin, parts}, problems);
     }
   }
   plan.problems = at_written_places(problems.take(), former);

@@ -72,12 +72,13 @@ using SceneLoader = std::function<std::string(const std::string& name)>;
 /// Reads a study and makes every run's scene. Nothing is thrown for bad text. Scenes that are
 /// predicted to be unstable are accepted: finding out is what a study is for. `origin` is that of
 /// the study: user's or one that was taken before. `load` may be empty:
-/// then the scene must stand in the study itself. A study of more than `most` runs is refused
-/// before any is made, one of more than kMaxStudyBytes as soon as that shows: what it takes of
-/// memory and time is bounded by these two.
+/// then the scene must stand in the study itself. `parts` has the files that scenes name. A study
+/// of more than `most` runs is refused before any is made, one of more than kMaxStudyBytes as soon
+/// as that shows: what it takes of memory and time is bounded by these two.
 [[nodiscard]] StudyPlan plan_study(std::string_view text, const SceneLoader& load,
                                    std::size_t most = kMaxStudyRuns,
-                                   SceneOrigin origin = SceneOrigin::user);
+                                   SceneOrigin origin = SceneOrigin::user,
+                                   const SceneParts& parts = no_parts);
 
 /// The JSON Schema 2020-12 of a study: schemas/study.schema.json is this text.
 [[nodiscard]] std::string study_schema_text();

@@ -101,8 +101,8 @@ void apply(json& scene, const std::string& key, const json& value) {
 class Planner {
  public:
   /// `bases`: the scene of each case.
-  Planner(StudyPlan& plan, Problems& problems, std::vector<json> bases, SceneOrigin origin)
-      : plan_(plan), problems_(problems), bases_(std::move(bases)), origin_(origin) {}
+  Planner(StudyPlan& plan, Problems& problems, std::vector<json> bases, const SceneSource& source)
+      : plan_(plan), problems_(problems), bases_(std::move(bases)), source_(source) {}
 
   void make_all() {
     std::vector<StudyCase> cases = plan_.study.cases;
@@ -171,7 +171,8 @@ class Planner {
       full_ = true;
       return;
     }
-    ParseResult parsed = parse_scene(run.scene_text, StabilityCheck::skip, origin_);
+    ParseResult parsed =
+        parse_scene(run.scene_text, StabilityCheck::skip, source_.origin, source_.parts);
     for (const Problem& problem : parsed.problems) {
       problems_.add("", fmt::format("run {}: {}: {}", run.name, problem.pointer, problem.message));
     }
@@ -182,7 +183,7 @@ class Planner {
     }
     run.scene = *std::move(parsed.scene);
     run.warnings = std::move(parsed.warnings);
-    std::string readable = text_for_folder(scene.dump(2) + "\n");
+    std::string readable = text_for_folder(scene.dump(2) + "\n", source_.parts);
     if (readable.size() <= kMaxSceneBytes) run.scene_text = std::move(readable);
     plan_.runs.push_back(std::move(run));
   }
@@ -190,7 +191,7 @@ class Planner {
   StudyPlan& plan_;
   Problems& problems_;
   std::vector<json> bases_;
-  SceneOrigin origin_;
+  SceneSource source_;
   std::set<std::string> names_;
   /// Once so much of it is wrong, the rest of a study is not looked at.
   static constexpr std::size_t kMostRefusedBytes = std::size_t{1} << 20;
@@ -202,8 +203,9 @@ class Planner {
 
 }  // namespace
 
-void make_runs(StudyPlan& plan, std::vector<json> bases, SceneOrigin origin, Problems& problems) {
-  Planner(plan, problems, std::move(bases), origin).make_all();
+void make_runs(StudyPlan& plan, std::vector<json> bases, const SceneSource& source,
+               Problems& problems) {
+  Planner(plan, problems, std::move(bases), source).make_all();
 }
 
 }  // namespace sluice

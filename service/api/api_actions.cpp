@@ -80,7 +80,8 @@ Extension replace_end_time(const ApiContext& context, Job job, double end_time) 
   JobFolder folder = JobFolder::open(context.paths(job.id).root());
   std::string before = folder.scene_text();
   const std::string extended = with_end_time(before, end_time);
-  const Admitted admitted = admit_job_scene(extended, context.scheduler.limits());
+  const Admitted admitted = admit_job_scene(extended, context.scheduler.limits(),
+                                            parts_in(folder.paths().root(), Links::refuse));
   describe_scene(job, admitted.scene, admitted.estimate);
   try {
     folder.publish_text(folder.paths().scene(), extended);

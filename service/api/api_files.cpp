@@ -32,6 +32,7 @@ std::vector<JobFileEntry> entries_of(const JobPaths& paths) {
       {paths.series(), "series"},      {paths.outcome(), "outcome"},
       {paths.report(), "report"},      {paths.report_markdown(), "report"},
       {paths.report_html(), "report"}, {paths.log(), "log"}};
+  for (auto& path : paths.parts()) entries.push_back({std::move(path), "mesh"});
   for (auto& path : paths.checkpoints()) entries.push_back({std::move(path), "checkpoint"});
   for (auto& path : frames_of(paths)) entries.push_back({std::move(path), "frame"});
   return entries;
@@ -43,7 +44,8 @@ std::string_view type_of(const std::filesystem::path& path) {
   if (extension == ".jsonl") return "application/x-ndjson";
   if (extension == ".md") return "text/markdown; charset=utf-8";
   if (extension == ".html") return "text/html; charset=utf-8";
-  return "application/x-hdf5";
+  if (extension == ".h5") return "application/x-hdf5";
+  return "application/octet-stream";
 }
 
 Response file_response(const std::filesystem::path& path) {

@@ -33,7 +33,8 @@ Scene scene_of(const ApiContext& context, const Job& job) {
                         fmt::format("the scene in the folder of job {} {}", job.id, how));
   };
   if (!is_present(paths.scene())) throw damaged("is gone");
-  ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
+  ParseResult result = parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse),
+                                       parts_in(paths.root(), Links::refuse));
   if (result.scene) return *std::move(result.scene);
   throw damaged("was altered");
 }

@@ -40,9 +40,15 @@ JobOptions read_job_options(const ApiContext& context, const Request& request) {
   return options;
 }
 
-std::string hash_of(const Request& request, const JobOptions& options) {
+std::string hash_of(const SubmittedScene& scene, const JobOptions& options) {
   return request_hash(
-      request, fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads));
+      scene, fmt::format("{}\n{}\n{}\n", options.label, options.priority, options.threads));
+}
+
+Admitted admit_submission(const SubmittedScene& scene, const ServiceLimits& limits) {
+  Admitted admitted = admit_scene(scene.text, limits, scene.parts);
+  require_named(scene, admitted.parts);
+  return admitted;
 }
 
 /// The job, and what may not have been meant in its scene.
@@ -64,15 +70,16 @@ Job new_job(ApiContext& context, const Admitted& admitted, const JobOptions& opt
   return job;
 }
 
-Response make_job(ApiContext& context, const Request& request, const JobOptions& options) {
+Response make_job(ApiContext& context, const SubmittedScene& scene, const JobOptions& options) {
   const ServiceLimits& limits = context.scheduler.limits();
-  const Admitted admitted = admit_scene(request.body, limits);
-  const std::string hash = options.key.empty() ? "" : hash_of(request, options);
+  const Admitted admitted = admit_submission(scene, limits);
+  const std::string hash = options.key.empty() ? "" : hash_of(scene, options);
   const Job job = new_job(context, admitted, options);
   // The folder comes first: a row without its folder could not run, a folder without its row is
   // found at the next start.
   NewFolder folder(context.paths(job.id), admitted.text,
-                   {job.label, job.priority, job.threads, job.created_ms, options.key, hash, {}});
+                   {job.label, job.priority, job.threads, job.created_ms, options.key, hash, {}},
+                   admitted.parts);
   const auto submitted = keeping_if_uncertain(
       folder, [&] { return context.store.submit(job, options.key, hash, limits.queued_jobs); });
   if (!submitted.repeated) folder.keep();
@@ -80,8 +87,9 @@ Response make_job(ApiContext& context, const Request& request, const JobOptions&
   return accepted(context, submitted.job, submitted.repeated, admitted.warnings);
 }
 
-Response show_plan(const ApiContext& context, const Request& request, const JobOptions& options) {
-  const Admitted admitted = admit_scene(request.body, context.scheduler.limits());
+Response show_plan(const ApiContext& context, const SubmittedScene& scene,
+                   const JobOptions& options) {
+  const Admitted admitted = admit_submission(scene, context.scheduler.limits());
   return json_response(
       200, {{"plan", Json::parse(plan_json(plan(admitted.scene)))},
             {"estimate", estimate_document(admitted.scene, admitted.estimate, options.threads)},
@@ -91,16 +99,16 @@ Response show_plan(const ApiContext& context, const Request& request, const JobO
 }  // namespace
 
 Response submit_job(ApiContext& context, const RouteRequest& request) {
-  require_json(request.http, "a scene");
+  const SubmittedScene scene = read_submission(request.http);
   const JobOptions options = read_job_options(context, request.http);
-  if (options.dry_run) return show_plan(context, request.http, options);
-  if (options.key.empty()) return make_job(context, request.http, options);
+  if (options.dry_run) return show_plan(context, scene, options);
+  if (options.key.empty()) return make_job(context, scene, options);
 
   const std::scoped_lock one_at_a_time(context.keyed_submits);
-  if (const auto known = context.store.find_by_key(options.key, hash_of(request.http, options))) {
-    return accepted(context, *known, true, parse_scene(request.http.body).warnings);
+  if (const auto known = context.store.find_by_key(options.key, hash_of(scene, options))) {
+    return accepted(context, *known, true, parse_scene(scene.text, scene.parts).warnings);
   }
-  return make_job(context, request.http, options);
+  return make_job(context, scene, options);
 }
 
 }  // namespace sluice

@@ -76,10 +76,21 @@ Job job_of(const StudyRecord& study, const StudyRun& run, int threads, std::stri
   return job;
 }
 
+/// A study is one document: no file comes with it.
+SceneParts parts_of_studies() {
+  return [](const std::string&) {
+    return ScenePart{{},
+                     {},
+                     "a study on a service has no files; run it with sluice study, which "
+                     "reads them beside it"};
+  };
+}
+
 }  // namespace
 
 StudyPlan admit_study(std::string_view text, const ServiceLimits& limits) {
-  StudyPlan plan = plan_study(text, {}, limits.runs_per_study);
+  StudyPlan plan =
+      plan_study(text, {}, limits.runs_per_study, SceneOrigin::user, parts_of_studies());
   if (!plan.problems.empty()) refuse_study(plan.problems);
   check_limits(plan, limits);
   check_overlap(plan);
@@ -87,7 +98,8 @@ StudyPlan admit_study(std::string_view text, const ServiceLimits& limits) {
 }
 
 StudyPlan plan_of_study(const StudyStore& studies, const StudyRecord& study) {
-  StudyPlan plan = plan_study(studies.document(study.id), {}, kMaxStudyRuns, SceneOrigin::study);
+  StudyPlan plan = plan_study(studies.document(study.id), {}, kMaxStudyRuns, SceneOrigin::study,
+                              parts_of_studies());
   if (plan.problems.empty()) return plan;
   const Problem& problem = plan.problems.front();
   throw StorageError(

@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <string_view>
+#include <utility>
 
 namespace sluice {
 namespace {
@@ -48,12 +49,21 @@ HttpConnection::Step HttpConnection::advance(const HttpLimits& limits, Clock::ti
   const std::size_t total = head_bytes_ + head_->body_bytes;
   if (received_.size() < total) return More{};
   Whole whole{std::move(head_->request), head_->keep_alive};
-  whole.request.body = received_.substr(head_bytes_, head_->body_bytes);
-  received_.erase(0, total);
+  if (received_.size() == total) {
+    received_.erase(0, head_bytes_);
+    whole.request.body = std::exchange(received_, {});
+  } else {
+    whole.request.body = received_.substr(head_bytes_, head_->body_bytes);
+    received_.erase(0, total);
+  }
   received_.shrink_to_fit();
   head_.reset();
   since_ = now;
   return whole;
+}
+
+std::size_t HttpConnection::upload_bytes(const HttpLimits& limits) const {
+  return head_ && head_->body_bytes > limits.body_bytes ? head_->body_bytes : 0;
 }
 
 void HttpConnection::say_continue() {

@@ -60,6 +60,8 @@ class HttpConnection {
   [[nodiscard]] bool lingers() const { return lingers_; }
   /// Whether part of a request has arrived.
   [[nodiscard]] bool in_request() const { return !received_.empty(); }
+  /// The bytes of the body that is arriving, where it is a long one; else 0.
+  [[nodiscard]] std::size_t upload_bytes(const HttpLimits& limits) const;
   /// Since when it has waited for the whole request, or for its first byte.
   [[nodiscard]] Clock::time_point since() const { return since_; }
 

@@ -106,10 +106,27 @@ void HttpGatherer::handle_event(int descriptor) {
   if (connection.answer()) {
     send_on(place);
   } else if (!connection.lingers()) {
-    follow(place, connection.receive(options_.limits, Clock::now()));
+    receive(place);
   } else if (connection.drop()) {
     waiting_.erase(place);
   }
+}
+
+/// Long bodies are taken for as long as there is room for all of them that arrive.
+void HttpGatherer::receive(Place place) {
+  HttpConnection& connection = *place->second;
+  const HttpLimits& limits = options_.limits;
+  const bool known = connection.upload_bytes(limits) > 0;
+  HttpConnection::Step step = connection.receive(limits, Clock::now());
+  if (!known && connection.upload_bytes(limits) > 0) {
+    std::size_t total = 0;
+    for (const auto& entry : waiting_) total += entry.second->upload_bytes(limits);
+    if (total > limits.all_uploads_bytes) {
+      return refuse(place, {ProblemType::overloaded,
+                            "too many files are being sent: try again in some seconds"});
+    }
+  }
+  follow(place, std::move(step));
 }
 
 void HttpGatherer::accept_all() {
@@ -258,10 +275,11 @@ void HttpGatherer::close_late(Clock::time_point now) {
     }
     const double waited = seconds_between(connection.since(), now);
     if (connection.in_request() && !connection.lingers()) {
-      if (waited <= options_.arrival_seconds) continue;
-      refuse(place,
-             {ProblemType::request_timeout,
-              fmt::format("the request was not whole after {} s", options_.arrival_seconds)});
+      const bool upload = connection.upload_bytes(options_.limits) > 0;
+      const double most = upload ? options_.upload_seconds : options_.arrival_seconds;
+      if (waited <= most) continue;
+      refuse(place, {ProblemType::request_timeout,
+                     fmt::format("the request was not whole after {} s", most)});
     } else if (waited > (connection.lingers() ? kLingerSeconds : options_.idle_seconds)) {
       waiting_.erase(place);
     }

@@ -53,6 +53,7 @@ class HttpGatherer {
   void admit(Connection connection);
   void take_back();
   void follow(Place place, HttpConnection::Step step);
+  void receive(Place place);
   void refuse(Place place, const Refusal& refusal);
   void send_on(Place place);
   void cut(Place place);

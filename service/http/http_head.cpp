@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 
+#include "service/http/multipart.hpp"
+
 namespace sluice {
 namespace {
 
@@ -194,11 +196,14 @@ std::size_t read_body_size(const Request& request, const HttpLimits& limits) {
   if (text.empty() || !std::ranges::all_of(text, is_digit)) {
     refuse("Content-Length is not a number");
   }
+  const bool upload =
+      request.method == "POST" && request.path == limits.upload_path && is_form(request);
+  const std::size_t most = upload ? limits.upload_bytes : limits.body_bytes;
   std::size_t bytes = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-  if (error != std::errc{} || bytes > limits.body_bytes) {
-    refuse(ProblemType::body_too_large, fmt::format("the body has {} bytes, at most {} are read",
-                                                    text.substr(0, 30), limits.body_bytes));
+  if (error != std::errc{} || bytes > most) {
+    refuse(ProblemType::body_too_large,
+           fmt::format("the body has {} bytes, at most {} are read", text.substr(0, 30), most));
   }
   return bytes;
 }

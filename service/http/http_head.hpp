@@ -17,6 +17,9 @@ struct HttpLimits {
   std::size_t header_lines = 100;
   std::size_t target_bytes = 4 * 1024;
   std::size_t body_bytes = 256 * 1024;
+  std::string upload_path = "/v1/jobs";              ///< where a form with files may be longer
+  std::size_t upload_bytes = 32 * 1024 * 1024;       ///< such a form
+  std::size_t all_uploads_bytes = 96 * 1024 * 1024;  ///< of those that arrive at once
 };
 
 /// Why a request is not taken.

@@ -23,6 +23,7 @@ struct HttpOptions {
   std::vector<std::string> apart{"/livez", "/readyz"};  ///< paths with a thread of their own
   std::int64_t large_bytes = 32 << 20;                  ///< of the bodies of those together
   double arrival_seconds = 10;  ///< for a whole request, from its first byte
+  double upload_seconds = 60;   ///< the same for a form with files
   double idle_seconds = 30;     ///< between requests
   double stall_seconds = 10;    ///< without a byte taken by the client
   HttpLimits limits;

@@ -45,7 +45,7 @@ constexpr std::array kProblems{
     ProblemEntry{not_dimensionless, 409, "not-dimensionless", "The scene has no dimensionless form",
                  "Give the scene the keys scales and gravity, or leave dimensionless out."},
     ProblemEntry{body_too_large, 413, "body-too-large", "The body is too large",
-                 "Send at most 256 KiB."},
+                 "Send at most 256 KiB, or 32 MiB as a form with meshes."},
     ProblemEntry{uri_too_long, 414, "uri-too-long", "The request target is too long",
                  "Send at most 4 KiB of path and query."},
     ProblemEntry{unsupported_media_type, 415, "unsupported-media-type",

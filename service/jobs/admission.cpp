@@ -45,7 +45,7 @@ void check_limits(const Estimate& estimate, const ServiceLimits& limits) {
 
 Admitted admit(ParseResult result, const ServiceLimits& limits) {
   if (!result.scene) refuse_scene(result.problems);
-  Admitted admitted{*std::move(result.scene), {}, {}, std::move(result.warnings)};
+  Admitted admitted{*std::move(result.scene), {}, {}, {}, std::move(result.warnings)};
   admitted.estimate = estimate(admitted.scene);
   check_limits(admitted.estimate, limits);
   fill(admitted);
@@ -55,18 +55,22 @@ Admitted admit(ParseResult result, const ServiceLimits& limits) {
 
 }  // namespace
 
-Admitted admit_scene(const std::string& text, const ServiceLimits& limits) {
-  Admitted admitted = admit(parse_scene(text), limits);
+Admitted admit_scene(const std::string& text, const ServiceLimits& limits,
+                     const SceneParts& parts) {
+  Admitted admitted = admit(parse_scene(text, parts), limits);
+  admitted.parts = parts_of(admitted.scene, parts);
   try {
-    admitted.text = text_for_folder(text);
+    admitted.text = text_for_folder(text, parts);
   } catch (const SceneError& error) {
     refuse_scene({error.problem()});
   }
   return admitted;
 }
 
-Admitted admit_job_scene(const std::string& text, const ServiceLimits& limits) {
-  Admitted admitted = admit(parse_scene(text, StabilityCheck::refuse, SceneOrigin::job), limits);
+Admitted admit_job_scene(const std::string& text, const ServiceLimits& limits,
+                         const SceneParts& parts) {
+  Admitted admitted =
+      admit(parse_scene(text, StabilityCheck::refuse, SceneOrigin::job, parts), limits);
   admitted.text = text;
   return admitted;
 }

@@ -9,6 +9,7 @@
 #include "engine/scene/checks/parse.hpp"
 #include "engine/scene/forecast/estimate.hpp"
 #include "engine/scene/model/scene.hpp"
+#include "engine/store/files/scene_parts.hpp"
 #include "service/http/problem.hpp"
 #include "service/jobs/job.hpp"
 #include "service/jobs/limits.hpp"
@@ -19,16 +20,20 @@ namespace sluice {
 struct Admitted {
   Scene scene;
   Estimate estimate;
-  std::string text;  ///< as the job's folder keeps it
+  std::string text;              ///< as the job's folder keeps it
+  std::vector<NamedPart> parts;  ///< the files that it names
   std::vector<Problem> warnings;
 };
 
 /// Parses a scene and holds it against the limits. Throws ApiError: invalid_scene with every
-/// problem as {pointer, detail}, over_limit with every limit that it breaks.
-[[nodiscard]] Admitted admit_scene(const std::string& text, const ServiceLimits& limits);
+/// problem as {pointer, detail}, over_limit with every limit that it breaks. `parts` gives the
+/// files that came with it.
+[[nodiscard]] Admitted admit_scene(const std::string& text, const ServiceLimits& limits,
+                                   const SceneParts& parts = no_parts);
 
 /// The same for the scene of a job that was taken before and is to end later.
-[[nodiscard]] Admitted admit_job_scene(const std::string& text, const ServiceLimits& limits);
+[[nodiscard]] Admitted admit_job_scene(const std::string& text, const ServiceLimits& limits,
+                                       const SceneParts& parts);
 
 /// As an array of {pointer, detail}.
 [[nodiscard]] nlohmann::ordered_json problem_list(const std::vector<Problem>& problems);

@@ -93,7 +93,8 @@ std::optional<JobFile> read_file(const JobPaths& paths, const RebuildReport& rep
 
 Scene read_scene(const JobPaths& paths) {
   const ParseResult result =
-      parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse));
+      parse_job_scene(read_text(paths.scene(), kMaxSceneBytes + 1, Links::refuse),
+                      parts_in(paths.root(), Links::refuse));
   if (!result.scene) {
     const Problem& problem = result.problems.front();
     throw std::runtime_error(

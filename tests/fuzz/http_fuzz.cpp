@@ -9,6 +9,7 @@
 
 #include "service/http/http_head.hpp"
 #include "service/http/http_range.hpp"
+#include "service/http/multipart.hpp"
 #include "service/http/problem.hpp"
 #include "service/http/query.hpp"
 #include "tests/fuzz/require.hpp"
@@ -48,9 +49,20 @@ void try_range(const Request& request) {
   }
 }
 
+void try_form(Request request, std::string_view body) {
+  if (!is_form(request)) return;
+  request.body = body;
+  try {
+    for (const FormPart& part : read_form(request)) {
+      require(part.bytes.size() <= body.size(), "a part is no longer than the form");
+    }
+  } catch (const ApiError&) {
+  }
+}
+
 void require_sound(const RequestHead& head, const HttpLimits& limits) {
   const Request& request = head.request;
-  require(head.body_bytes <= limits.body_bytes, "the body is bounded");
+  require(head.body_bytes <= limits.upload_bytes, "the body is bounded");
   require(request.path.starts_with('/'), "a path begins with /");
   require(request.path.find('\0') == std::string::npos, "a path holds no zero byte");
   require(request.headers.size() <= limits.header_lines, "the headers are bounded");
@@ -87,6 +99,7 @@ void try_head(std::string_view received) {
   require_sound(head, limits);
   try_query(head.request);
   try_range(head.request);
+  try_form(head.request, received.substr(end->bytes));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 # Feeds the fuzzers: what reads bytes from outside, under the address and undefined-behaviour
 # sanitizers. Exits 0 only when none found anything.
 #
-#   tests/fuzz/run.sh [SECONDS [NAME...]]    600 each by default; all of: scene http checkpoint
+#   tests/fuzz/run.sh [SECONDS [NAME...]]    600 each by default; all of: scene mesh http checkpoint
 #
 # Two run side by side. What they learn is kept in build/fuzz/corpus, and an input that broke
 # something in build/fuzz/findings: run build/fuzz/tests/fuzz/fuzz_NAME FILE to see it again.
@@ -16,7 +16,7 @@ fi
 seconds=${1:-600}
 shift || true
 names=("$@")
-((${#names[@]})) || names=(scene http checkpoint)
+((${#names[@]})) || names=(scene mesh http checkpoint)
 
 deploy/install-dependencies.sh --tests || exit 1
 cmake --preset fuzz >/dev/null || exit 1

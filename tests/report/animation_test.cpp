@@ -92,6 +92,37 @@ TEST(Animation, IsOnePngWithAPictureForEachSnapshotAndLeavesOutWhatCannotBeRead)
   EXPECT_EQ(big_endian_at(png, png.find("acTL") + 4), 4U);
 }
 
+TEST(Animation, ShowsASceneOfSpaceAsABodyOrAsASection) {
+  const Folder folder;
+  const ParseResult parsed = parse_scene(
+      R"({"name": "body", "dimensions": 3, "tank": {"width": 1, "height": 0.5, "depth": 0.5},
+          "fluid": [{"shape": "box", "corner": [0, 0, 0], "size": [0.3, 0.2, 0.5]}],
+          "gravity": [0, -9.81, 0], "resolution": {"spacing": 0.05},
+          "output": {"frames": {"interval": 0.1}}, "end_time": 1})",
+      StabilityCheck::skip);
+  ASSERT_TRUE(parsed.scene);
+  const Report report = report_of(*parsed.scene);
+  Snapshot frame = empty_snapshot(0, 0.0, 3);
+  append(frame.position, std::array{0.1F, 0.1F, 0.25F});
+  append(frame.velocity, std::array{0.0F, 0.0F, 0.0F});
+  frame.pressure = {1000.0F};
+  frame.id = {0};
+  write_snapshot(folder.path() / "frames" / snapshot_name(0), frame, Durability::process_crash);
+  const std::string body = animation_png(folder.path(), report, Quantity::pressure, Look::rendered);
+  const std::string section =
+      animation_png(folder.path(), report, Quantity::pressure, Look::section);
+  // A section is as wide to its height as the tank with its walls; the body is seen from above too.
+  const auto shape = [](const std::string& png) {
+    return static_cast<double>(big_endian_at(png, 16)) / big_endian_at(png, 20);
+  };
+  EXPECT_GT(shape(section), shape(body));
+  const std::string page = report_html(report, {}, {frame});
+  EXPECT_NE(page.find("as a section at z = 0.25 m"), std::string::npos);
+  EXPECT_NE(page.find("colours-view-0"), std::string::npos);
+  EXPECT_NE(page.find("colours-section-0"), std::string::npos);
+  EXPECT_EQ(report_html(report_of(test_scene()), {}, {}).find("as a body"), std::string::npos);
+}
+
 TEST(Animation, OfAJobWithoutSnapshotsIsEmpty) {
   const Folder folder;
   EXPECT_TRUE(animation_png(folder.path(), report_of(test_scene()), Quantity::speed).empty());

@@ -68,7 +68,7 @@ def check_particles(file, scene, started):
     ratio = 1.0 + fields["density_excess"] / density
     require(ratio.size == 0 or (ratio.min() >= 0.7 and ratio.max() <= 1.3), "density beyond guards")
     if "sound_speed" in scene["material"]:
-        speed = numpy.hypot(fields["vx"], fields["vy"])
+        speed = numpy.sqrt(sum(fields[axis] ** 2 for axis in ("vx", "vy", "vz") if axis in fields))
         require(speed.size == 0 or speed.max() <= scene["material"]["sound_speed"], "faster than c")
 
 

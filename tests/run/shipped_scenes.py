@@ -18,6 +18,7 @@ import glob
 import hashlib
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -56,6 +57,14 @@ def shipped(folder, wanted):
         name = os.path.splitext(os.path.basename(path))[0]
         if "fluid" in scene and (not wanted or name in wanted):
             yield name, scene
+
+
+def copy_meshes(scenes, scene, folder):
+    """Puts the files that a scene names beside the file that it is run from."""
+    for shape in scene["fluid"] + scene.get("obstacles", []):
+        if "file" in shape:
+            os.makedirs(folder, exist_ok=True)
+            shutil.copy(os.path.join(scenes, shape["file"]), folder)
 
 
 def is_dam_break(name):
@@ -138,6 +147,7 @@ def table(arguments, folder):
         for name, scene in shipped(arguments.scenes, arguments.scene):
             seeds = range(1, arguments.members + 1) if is_dam_break(name) else [0]
             for target in targets:
+                copy_meshes(arguments.scenes, scene, os.path.join(folder, target))
                 for precision in arguments.precision or PRECISIONS:
                     place = os.path.join(folder, target, f"{name}-{precision}")
                     members = [pool.submit(run, arguments.program, f"{place}-{seed}",

@@ -55,7 +55,7 @@ FORBIDDEN_IN = {
 # Who may name an axis of space: the border that keeps the number of dimensions out of the rest. Beyond it fields, axes
 # and vectors are walked. Pictures and the documents of scenes and files have axes; exact solutions are of the plane.
 KNOWS_AXES = ("engine/space/", "engine/sph/", "engine/scene/geometry/", "engine/scene/filling/",
-              "engine/draw/", "engine/report/picture_svg.", "engine/report/animation.",
+              "engine/draw/", "engine/report/picture_svg.", "engine/report/animation.", "engine/report/frame_painter.",
               "engine/scene/format/", "engine/store/files/snapshot_io.cpp", "engine/verify/", "tests/")
 AXIS = re.compile(r"(?:\.|->)[xyz]\(\)|\bv[xyz]\b|\b(?:position|velocity|acceleration)\w*\[\d\]|\.origin_[xyz]\b")
 

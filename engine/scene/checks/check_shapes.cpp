@@ -18,9 +18,11 @@ constexpr double kMaxDomainCells = 1e6;
 constexpr double kMaxOffsetCells = 1e9;
 // Lengths that are meant to be equal may differ by rounding: 0.1 + 0.2 against 0.3.
 constexpr double kSlack = 1e-9;
+// The files of meshes have seven digits.
+constexpr double kSlackOfMeshes = 1e-6;
 
-bool within(const Box& inner, const Box& outer) {
-  const double slack = kSlack * outer.size().maxCoeff();
+bool within(const Box& inner, const Box& outer, double of_size = kSlack) {
+  const double slack = of_size * outer.size().maxCoeff();
   return (inner.min.array() >= outer.min.array() - slack).all() &&
          (inner.max.array() <= outer.max.array() + slack).all();
 }
@@ -53,6 +55,11 @@ Vec size_of(const Shape& shape) {
   return bounds(shape).size();
 }
 
+bool within(const Shape& inner, const Box& outer) {
+  return within(bounds(inner), outer,
+                std::holds_alternative<Mesh>(inner) ? kSlackOfMeshes : kSlack);
+}
+
 /// Everything that must lie in the domain: the tank with its walls, else the fluid and obstacles.
 void check_domain_holds(const Scene& scene, const WrittenScene& written, Problems& problems) {
   const Box& domain = scene.domain.box;
@@ -68,7 +75,7 @@ void check_domain_holds(const Scene& scene, const WrittenScene& written, Problem
     return;
   }
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
-    if (within(bounds(shape), domain)) return;
+    if (within(shape, domain)) return;
     problems.add(pointer,
                  fmt::format("reaches from {}; must lie in /domain, {}{}", show(bounds(shape)),
                              show(domain), written.domain ? "" : " (the default)"));
@@ -125,7 +132,7 @@ void check_tank(const Scene& scene, Problems& problems) {
   }
   const Box inside = scene.tank->interior();
   for_each_shape(scene, problems, [&](const std::string& pointer, const Shape& shape) {
-    if (within(bounds(shape), inside)) return;
+    if (within(shape, inside)) return;
     problems.add(pointer, fmt::format("reaches from {}; must lie inside /tank, {}",
                                       show(bounds(shape)), show(inside)));
   });

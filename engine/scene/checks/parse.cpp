@@ -4,6 +4,7 @@
 
 #include "engine/scene/checks/check.hpp"
 #include "engine/scene/checks/meaning.hpp"
+#include "engine/scene/checks/surfaces.hpp"
 #include "engine/scene/format/describe.hpp"
 #include "engine/scene/format/former_words.hpp"
 #include "engine/scene/format/json_text.hpp"
@@ -84,9 +85,26 @@ WrittenScene read_without_scheme(const json& scene, SceneOrigin origin, Problems
   return now;
 }
 
+/// Writes the SHA-256 of each mesh beside its file where it is not there, and says whether it did.
+bool name_meshes(const Scene& scene, nlohmann::ordered_json& text) {
+  bool any = false;
+  const auto name = [&](const Shape& shape, nlohmann::ordered_json& written) {
+    const auto* mesh = std::get_if<Mesh>(&shape);
+    if (mesh == nullptr || written.contains("sha256")) return;
+    written["sha256"] = mesh->sha256;
+    any = true;
+  };
+  for (std::size_t i = 0; i < scene.fluid.size(); ++i) name(scene.fluid[i].shape, text["fluid"][i]);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    name(scene.obstacles[i], text["obstacles"][i]);
+  }
+  return any;
+}
+
 }  // namespace
 
-ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOrigin origin) {
+ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOrigin origin,
+                        const SceneParts& parts) {
   Problems problems;
   Problems warnings;
   auto scene = read_json(text, problems);
@@ -94,36 +112,40 @@ ParseResult parse_scene(std::string_view text, StabilityCheck stability, SceneOr
   const auto former = use_present_words(*scene, kFormerSceneWords, problems);
 
   const json numerics = numerics_of(*scene);
-  const WrittenScene written =
+  WrittenScene written =
       numerics.contains("scheme")
           ? read_written(*scene, named_scheme(numerics).value_or(Scheme::recommended), problems)
           : read_without_scheme(*scene, origin, problems);
+  make_surfaces(written.scene, parts, problems, warnings);
   if (scene->is_object()) check(written, {stability, origin}, problems, warnings);
 
   if (!problems.empty()) return {std::nullopt, at_written_places(problems.take(), former), {}};
   return {resolve(written), {}, at_written_places(warnings.take(), former)};
 }
 
-ParseResult parse_job_scene(std::string_view text) {
-  return parse_scene(text, StabilityCheck::skip, SceneOrigin::job);
+ParseResult parse_job_scene(std::string_view text, const SceneParts& parts) {
+  return parse_scene(text, StabilityCheck::skip, SceneOrigin::job, parts);
 }
 
-std::string text_for_folder(const std::string& text) {
-  const ParseResult before = parse_job_scene(text);
-  const ParseResult now = parse_scene(text, StabilityCheck::skip, SceneOrigin::study);
-  if (!now.scene ||
-      (before.scene && numerics_json(before.scene->method) == numerics_json(now.scene->method))) {
-    return text;
-  }
+std::string text_for_folder(const std::string& text, const SceneParts& parts) {
+  const ParseResult now = parse_scene(text, StabilityCheck::skip, SceneOrigin::study, parts);
+  if (!now.scene) return text;
+  const ParseResult before = parse_job_scene(text, parts);
   auto scene = nlohmann::ordered_json::parse(text);
-  scene["numerics"]["scheme"] = word_for(kSchemeWords, Scheme::recommended);
+  bool as_it_is = !name_meshes(*now.scene, scene);
+  if (!before.scene || numerics_json(before.scene->method) != numerics_json(now.scene->method)) {
+    scene["numerics"]["scheme"] = word_for(kSchemeWords, Scheme::recommended);
+    as_it_is = false;
+  }
+  if (as_it_is) return text;
   std::string named = scene.dump(2) + "\n";
   if (named.size() > kMaxSceneBytes) named = scene.dump();
   if (named.size() <= kMaxSceneBytes) return named;
-  throw SceneError({"", fmt::format("is {} bytes with the scheme that it means but does not name; "
-                                    "at most {}: write \"scheme\": \"recommended\" in numerics "
-                                    "and shorten its curves",
-                                    named.size(), kMaxSceneBytes)});
+  throw SceneError(
+      {"", fmt::format("is {} bytes with the scheme that it means and the SHA-256 of its meshes, "
+                       "which it does not name; at most {}: write \"scheme\": \"recommended\" in "
+                       "numerics and shorten its curves and heights",
+                       named.size(), kMaxSceneBytes)});
 }
 
 }  // namespace sluice

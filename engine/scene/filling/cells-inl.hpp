@@ -52,8 +52,8 @@ inline std::vector<double> crossings(const Polygon& s, const VecN<2>& place) {
 }
 
 template <class S>
-requires std::is_same_v<S, Cylinder> || std::is_same_v<S, Prism> std::vector<double> crossings(
-    const S& s, const VecN<3>& place) {
+requires std::is_same_v<S, Cylinder> || std::is_same_v<S, Prism> || Meshed<S> std::vector<double>
+crossings(const S& s, const VecN<3>& place) {
   return chords(s, VecN<3>(0.0, place.y(), place.z()), VecN<3>::Unit(0));
 }
 

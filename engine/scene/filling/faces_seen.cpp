@@ -11,6 +11,7 @@ namespace {
 
 using Point = VecN<2>;
 
+constexpr double kReach = 1.5;  // spacings; triangles farther than that are not looked at
 constexpr std::string_view kSolid = "an obstacle or the gate";
 
 bool is_whole(double cells) { return std::abs(cells - std::round(cells)) < kOffLattice; }
@@ -103,6 +104,25 @@ struct FacesSeenInSpace {
     for (const double face : {s.z, s.z + s.depth}) {
       found.push_back({std::abs(point.z() - face) / dx, true, is_whole(face / dx), kSolid});
     }
+    return found;
+  }
+  /// Triangles within reach that the point is straight beside.
+  template <Meshed S>
+  std::vector<SeenFace> operator()(const S& s) const {
+    std::vector<SeenFace> found;
+    const TriangleMesh& surface = surface_of(s);
+    const double reach = kReach * dx;
+    surface.for_each_in(grown(BoxN<3>{point, point}, reach), [&](std::size_t i) {
+      const VecN<3> normal = surface.normal(i);
+      const VecN<3> apart = nearest_point(surface.triangle(i), point) - point;
+      const double distance = apart.norm();
+      const bool beside = std::abs(normal.dot(apart)) >= distance * (1 - 1e-9);
+      if (distance > reach || !beside || normal.isZero(0.0)) return;
+      Eigen::Index axis = 0;
+      const bool along_lattice = normal.cwiseAbs().maxCoeff(&axis) > 1 - 1e-9;
+      const bool backed = along_lattice && is_whole((point[axis] + apart[axis]) / dx);
+      found.push_back({distance / dx, along_lattice, backed, kSolid});
+    });
     return found;
   }
 };

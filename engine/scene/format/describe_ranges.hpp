@@ -14,6 +14,7 @@ inline constexpr Range kTime = above(0, 1e6);
 inline constexpr Range kSoundSpeed = from(1e-6, 1e7);
 inline constexpr std::size_t kMaxShapes = 64;
 inline constexpr std::size_t kMaxPolygonPoints = 256;
+inline constexpr std::size_t kMaxHeights = 256;  // nodes of a grid along x or z
 inline constexpr std::size_t kMaxSensors = 1024;
 inline constexpr std::size_t kMaxReferenceCurves = 32;
 inline constexpr std::size_t kMaxPictures = 24;

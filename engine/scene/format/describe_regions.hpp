@@ -78,6 +78,62 @@ void describe(Archive& a, Prism& shape) {
   describe_length(a, "depth", shape.depth, "how far it goes on along z");
 }
 
+template <class Archive>
+void describe(Archive& a, Heights& shape) {
+  describe_place(a, "corner", shape.corner,
+                 "where the grid begins in x and z; its y is that of the base");
+  a.vector("step", shape.step,
+           {.about = "from one node of the grid to the next, along x and z",
+            .unit = "m",
+            .range = kLength,
+            .need = Need::required});
+  a.rows("heights", shape.heights,
+         {.about = "y of the surface above each node, above the base: rows along x, one for each "
+                   "z. Between the nodes it is straight: a cell's two triangles meet on the line "
+                   "from its node of lowest x and z to that of highest",
+          .min = 2,
+          .max = kMaxHeights,
+          .need = Need::required},
+         {.about = "y", .unit = "m", .range = kCoordinate});
+}
+
+template <class Archive>
+void describe(Archive& a, Rotation& rotation) {
+  a.vector("axis", rotation.axis,
+           {.about = "the axis' direction, of any length",
+            .range = from(-1e6, 1e6),
+            .need = Need::required});
+  a.number("angle", rotation.angle,
+           {.about = "anticlockwise, as seen from the tip of the axis",
+            .unit = "degree",
+            .range = from(-360, 360),
+            .need = Need::required});
+}
+
+template <class Archive>
+void describe(Archive& a, Mesh& shape) {
+  a.text("file", shape.file,
+         {.about = "name of an STL (ascii or binary) or OBJ file beside the scene; with a job it "
+                   "is submitted as a further part. Its surface is closed: each edge has two "
+                   "triangles. At most 16 MiB, and 200000 triangles in all meshes of a scene",
+          .characters = Characters::mesh,
+          .min = 5,
+          .max = 64,
+          .need = Need::required});
+  a.text("sha256", shape.sha256,
+         {.about = "SHA-256 of the file; a job's folder names it, and a file that differs is "
+                   "refused",
+          .characters = Characters::sha256,
+          .min = 64,
+          .max = 64});
+  a.number("scale", shape.scale,
+           {.about = "length of a unit of the file", .unit = "m", .range = above(0, 1e6)});
+  a.section("rotation", shape.rotation,
+            {.about = "turns it about the file's origin, after the scale", .otherwise = "none"});
+  a.vector("place", shape.place,
+           {.about = "where the file's origin comes to lie", .unit = "m", .range = kCoordinate});
+}
+
 /// A shape, and in the same object the keys that `more` describes.
 template <class Archive, class More>
 void describe_shape(Archive& a, Shape& shape, const More& more) {

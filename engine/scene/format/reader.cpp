@@ -5,19 +5,9 @@
 #include <algorithm>
 
 #include "engine/scene/format/code_points.hpp"
+#include "engine/scene/format/text_rules.hpp"
 
 namespace sluice {
-namespace {
-
-bool is_name_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '.' || c == '-';
-}
-
-bool is_control_character(char c) { return (c >= 0 && c < ' ') || c == 0x7f; }
-
-}  // namespace
-
 Reader::Reader(const json& value, std::string pointer, Problems& problems, int dimensions)
     : value_(value), pointer_(std::move(pointer)), problems_(problems), dimensions_(dimensions) {
   is_object_ = value.is_object();
@@ -155,15 +145,11 @@ void Reader::flag(std::string_view key, bool& member, const KeySpec& spec) {
 void Reader::text(std::string_view key, std::string& member, const TextSpec& spec) {
   const json* found = find(key, spec.need, spec.about);
   if (found == nullptr) return;
-  const bool name = spec.characters == Characters::name;
-  const std::string allowed =
-      fmt::format("a text of {} to {} characters, {}", spec.min, spec.max,
-                  name ? "each a letter, a digit or one of _ . -" : "none a control character");
+  const std::string allowed = fmt::format("a text of {} to {} characters, {}", spec.min, spec.max,
+                                          allowed_text(spec.characters));
   const auto valid = [&](const std::string& text) {
     const std::size_t length = count_code_points(text);
-    return length >= spec.min && length <= spec.max &&
-           (name ? std::all_of(text.begin(), text.end(), is_name_character)
-                 : std::none_of(text.begin(), text.end(), is_control_character));
+    return length >= spec.min && length <= spec.max && are_allowed(text, spec.characters);
   };
   if (found->is_string() && valid(found->get_ref<const std::string&>())) {
     member = found->get<std::string>();
@@ -202,6 +188,28 @@ void Reader::numbers(std::string_view key, std::vector<double>& member, const Li
   for (std::size_t i = 0; i < found->size(); ++i) {
     if (const auto value = read_number((*found)[i], at(at(pointer_, key), i), each)) {
       member.push_back(*value);
+    }
+  }
+}
+
+void Reader::rows(std::string_view key, std::vector<std::vector<double>>& member,
+                  const ListSpec& spec, const NumberSpec& each) {
+  const json* found = find_list(key, spec);
+  if (found == nullptr) return;
+  for (std::size_t j = 0; j < found->size(); ++j) {
+    const json& row = (*found)[j];
+    const std::string pointer = at(at(pointer_, key), j);
+    const json& first = found->front();
+    if (!row.is_array() || row.size() < spec.min || row.size() > spec.max) {
+      problems_.add(pointer, fmt::format("is {}; must be a row of {} to {} numbers",
+                                         name_value(row), spec.min, spec.max));
+    } else if (first.is_array() && row.size() != first.size()) {
+      problems_.add(pointer, fmt::format("has {} numbers; must have as many as the first row, {}",
+                                         row.size(), first.size()));
+    }
+    std::vector<double>& numbers = member.emplace_back();
+    for (std::size_t i = 0; row.is_array() && i < row.size(); ++i) {
+      numbers.push_back(read_number(row[i], at(pointer, i), each).value_or(0.0));
     }
   }
 }

@@ -48,6 +48,9 @@ class Reader {
               const NumberSpec& point);
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
                const NumberSpec& each);
+  /// Rows of numbers, as many in each, of which `spec` says how many there may be both ways.
+  void rows(std::string_view key, std::vector<std::vector<double>>& member, const ListSpec& spec,
+            const NumberSpec& each);
   /// Any value whose type is one of `types`: "object", "array", "string".
   void any(std::string_view key, nlohmann::json& member, const KeySpec& spec,
            std::initializer_list<std::string_view> types);

@@ -7,6 +7,7 @@
 #include "engine/scene/format/describe.hpp"
 #include "engine/scene/format/former_words.hpp"
 #include "engine/scene/format/schema_writer.hpp"
+#include "engine/scene/format/text_rules.hpp"
 #include "engine/scene/model/problems.hpp"
 
 namespace sluice {
@@ -97,13 +98,13 @@ void SchemaWriter::flag(std::string_view key, bool& member, const KeySpec& spec)
 }
 
 void SchemaWriter::text(std::string_view key, std::string& member, const TextSpec& spec) {
-  const bool name = spec.characters == Characters::name;
   json property = {{"description", spec.about},
                    {"type", "string"},
                    {"minLength", spec.min},
                    {"maxLength", spec.max},
-                   {"pattern", name ? "^[A-Za-z0-9_.-]*$" : "^[^\\u0000-\\u001f\\u007f]*$"}};
-  if (spec.need == Need::optional) property["default"] = member;
+                   {"pattern", allowed_pattern(spec.characters)}};
+  // What is too short for a text to be given stands for none.
+  if (spec.need == Need::optional && member.size() >= spec.min) property["default"] = member;
   put(key, std::move(property), spec.need);
 }
 
@@ -124,6 +125,17 @@ void SchemaWriter::points(std::string_view key, std::vector<Vec2>& /*member*/, c
 void SchemaWriter::numbers(std::string_view key, std::vector<double>& /*member*/,
                            const ListSpec& spec, const NumberSpec& each) {
   put_list(key, describe_number(each), spec);
+}
+
+void SchemaWriter::rows(std::string_view key, std::vector<std::vector<double>>& /*member*/,
+                        const ListSpec& spec, const NumberSpec& each) {
+  put_list(key,
+           {{"type", "array"},
+            {"items", describe_number(each)},
+            {"minItems", spec.min},
+            {"maxItems", spec.max}},
+           spec);
+  properties_[std::string(key)]["x-unit"] = each.unit;
 }
 
 void SchemaWriter::any(std::string_view key, nlohmann::json& /*member*/, const KeySpec& spec,

@@ -41,6 +41,8 @@ class SchemaWriter {
               const NumberSpec& point);
   void numbers(std::string_view key, std::vector<double>& member, const ListSpec& spec,
                const NumberSpec& each);
+  void rows(std::string_view key, std::vector<std::vector<double>>& member, const ListSpec& spec,
+            const NumberSpec& each);
   void any(std::string_view key, nlohmann::json& member, const KeySpec& spec,
            std::initializer_list<std::string_view> types);
 

@@ -47,6 +47,11 @@ class Writer {
     if (!member.empty() || spec.need == Need::required) put(key, member);
   }
 
+  void rows(std::string_view key, std::vector<std::vector<double>>& member, const ListSpec&,
+            const NumberSpec&) {
+    put(key, member);
+  }
+
   template <class Enum, std::size_t n>
   void word(std::string_view key, const Words<Enum, n>& words, Enum& member, const KeySpec&) {
     put(key, word_for(words, member));

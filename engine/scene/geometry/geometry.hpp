@@ -7,13 +7,15 @@
 #include "engine/scene/geometry/plane_shapes.hpp"
 #include "engine/scene/geometry/shapes.hpp"
 #include "engine/scene/geometry/space_shapes.hpp"
+#include "engine/scene/geometry/surfaces.hpp"
 #include "engine/scene/model/scene.hpp"
 
 namespace sluice {
 
 // What every shape answers, of any number of dimensions: shapes.hpp has the bodies that are the
-// same in all, plane_shapes.hpp those of the plane, space_shapes.hpp those of space. A shape that
-// lacks one does not compile. A point that is handed in has as many dimensions as the shape.
+// same in all, plane_shapes.hpp those of the plane, space_shapes.hpp and surfaces.hpp those of
+// space. A shape that lacks one does not compile. A point that is handed in has as many dimensions
+// as the shape.
 
 template <class T>
 concept AnyShape =

@@ -38,6 +38,10 @@ class SolidsN {
     BoxN<Dim> box;
   };
 
+  /// Whether the shortest way out of one body, where that is known, is no longer than `depth` and
+  /// ends in the open.
+  [[nodiscard]] bool gets_out(const Point& point, double depth) const;
+
   std::vector<Body> bodies_;
   std::optional<TankRoomN<Dim>> tank_;
   double slack_;             ///< m; gaps of rounding are none

@@ -1,6 +1,9 @@
 #include "engine/scene/geometry/ways_through.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 
 #include "engine/scene/geometry/directions.hpp"
@@ -16,6 +19,7 @@ constexpr int kDiameters = 8;         // of a cylinder, round its axis
 constexpr double kOffAxis = 2.0 / 3;  // of its radius
 constexpr double kTouch = 1e-3;       // of a spacing: no way through a body
 constexpr std::size_t kPointsOfSection = 512;
+constexpr std::size_t kPointsOfSurface = 1024;  // about; each triangle of fewer has some
 
 std::vector<Chord> chords_of(const Cuboid<3>& s, double /*dx*/) {
   std::vector<Chord> result;
@@ -100,6 +104,42 @@ std::vector<Chord> chords_of(const Prism& s, double dx) {
     }
     const Vec2 middle = 0.5 * (point.place + to);
     result.emplace_back(in_space(middle, s.z), in_space(middle, s.z + s.depth));
+  }
+  return result;
+}
+
+/// Places that share out a triangle's area: middles of the parts when its sides are cut in `cuts`.
+template <class F>
+void for_each_place(const std::array<Vec3, 3>& triangle, int cuts, const F& f) {
+  const auto& [a, b, c] = triangle;
+  const Vec3 u = (b - a) / cuts, v = (c - a) / cuts;
+  for (int i = 0; i < cuts; ++i) {
+    for (int j = 0; i + j < cuts; ++j) {
+      f(Vec3(a + (i + 1.0 / 3) * u + (j + 1.0 / 3) * v));
+      if (i + j + 1 < cuts) f(Vec3(a + (i + 2.0 / 3) * u + (j + 2.0 / 3) * v));
+    }
+  }
+}
+/// From places on the triangles straight in, until out again.
+template <Meshed S>
+std::vector<Chord> chords_of(const S& s, double dx) {
+  const TriangleMesh& surface = surface_of(s);
+  std::vector<Chord> result;
+  const std::size_t stride = 1 + surface.size() / kPointsOfSurface;
+  const double share = surface.area() / kPointsOfSurface;
+  for (std::size_t i = 0; i < surface.size(); i += stride) {
+    const auto triangle = surface.triangle(i);
+    const Vec3 out = surface.normal(i);
+    if (out.isZero(0.0)) continue;
+    const double area = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).norm() / 2;
+    const int cuts = static_cast<int>(std::ceil(std::sqrt(std::max(1.0, area / share))));
+    for_each_place(triangle, cuts, [&](const Vec3& from) {
+      for (const auto& end : surface.ends_of_chords(from, -out)) {
+        if (end.t <= kTouch * dx) continue;
+        result.emplace_back(from, from - end.t * out, out, surface.normal(end.triangle));
+        break;
+      }
+    });
   }
   return result;
 }

@@ -20,6 +20,8 @@ struct Problem {
 
 /// Limits that hold before anything is read or allocated.
 inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;
+inline constexpr std::size_t kMaxMeshBytes = 16 * 1024 * 1024;  ///< of one file
+inline constexpr std::size_t kMaxMeshTriangles = 200'000;       ///< of all meshes of a scene
 inline constexpr std::size_t kMaxSceneDepth = 16;
 inline constexpr double kMaxParticles = 50e6;
 inline constexpr std::size_t kMaxProblems = 100;

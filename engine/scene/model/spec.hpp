@@ -39,6 +39,8 @@ struct ListSpec {
 enum class Characters {
   name,      ///< letters, digits, _ . -
   sentence,  ///< anything but control characters
+  mesh,      ///< the bare name of an STL or OBJ file
+  sha256,    ///< 64 hexadecimal digits
 };
 struct TextSpec {
   std::string_view about = {};

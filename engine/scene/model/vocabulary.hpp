@@ -15,7 +15,9 @@ enum class ShapeKind {
   sphere,
   ellipsoid,
   cylinder,
-  prism
+  prism,
+  heights,
+  mesh
 };
 
 [[nodiscard]] inline ShapeKind kind_of(const Shape& shape) {
@@ -41,12 +43,16 @@ enum class ShapeKind {
       return Cylinder{};
     case ShapeKind::prism:
       return Prism{};
+    case ShapeKind::heights:
+      return Heights{};
+    case ShapeKind::mesh:
+      return Mesh{};
   }
   return Rectangle{};
 }
 
 // The words that scenes write for each enumeration.
-inline constexpr Words<ShapeKind, 9> kShapeWords{{
+inline constexpr Words<ShapeKind, 11> kShapeWords{{
     {"rectangle", ShapeKind::rectangle, "in the plane, axis-aligned"},
     {"circle", ShapeKind::circle, "in the plane"},
     {"ellipse", ShapeKind::ellipse, "in the plane, axis-aligned"},
@@ -57,6 +63,10 @@ inline constexpr Words<ShapeKind, 9> kShapeWords{{
     {"cylinder", ShapeKind::cylinder, "in space, right and circular, its axis in any direction"},
     {"prism", ShapeKind::prism,
      "in space: a polygon of the plane of x and y, without self-intersections, drawn out along z"},
+    {"heights", ShapeKind::heights,
+     "in space, such as a bed: what lies between a level base and heights on a grid over it"},
+    {"mesh", ShapeKind::mesh,
+     "in space: the inside of a closed surface of triangles, an STL or OBJ file beside the scene"},
 }};
 inline constexpr Words<InitialPressure, 2> kInitialPressureWords{{
     {"hydrostatic", InitialPressure::hydrostatic, "that of water at rest below the region's top"},

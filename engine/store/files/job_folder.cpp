@@ -62,16 +62,18 @@ void make_folder(const fs::path& folder) {
   }
 }
 
-/// An empty folder, or one in which the making of a job was cut short.
-void require_free_folder(const fs::path& folder) {
+/// An empty folder, or one in which the making of a job was cut short: with its lock, and parts of
+/// its scene.
+void require_free_folder(const fs::path& folder, const std::vector<NamedPart>& begun) {
   if (JobFolder::holds_job(folder)) {
     throw StorageError(StorageFault::already_exists,
                        fmt::format("{}: holds a job already; resume it by its folder, or choose "
                                    "another one",
                                    folder.string()));
   }
-  const std::vector<fs::path> others =
-      sorted_paths(folder, [](std::string_view name) { return name != "lock"; });
+  const std::vector<fs::path> others = sorted_paths(folder, [&](std::string_view name) {
+    return name != "lock" && std::ranges::find(begun, name, &NamedPart::name) == begun.end();
+  });
   if (!others.empty()) {
     throw StorageError(
         StorageFault::not_ours,
@@ -107,16 +109,18 @@ void JobFolder::remove_leftovers() const {
 }
 
 JobFolder JobFolder::create(const fs::path& folder, std::string_view scene_text,
-                            FileSystem& system) {
+                            const std::vector<NamedPart>& parts, FileSystem& system) {
   make_folder(folder);
   require_writable(folder);
   // Before the lock, so that no lock file is left in a folder of someone else.
   std::error_code ignored;
   if (!fs::is_regular_file(fs::symlink_status(JobPaths(folder).lock(), ignored))) {
-    require_free_folder(folder);
+    require_free_folder(folder, {});
   }
   JobFolder job(JobPaths(folder), system);
-  require_free_folder(folder);
+  require_free_folder(folder, parts);
+  // The scene last: it makes the folder a job's.
+  for (const NamedPart& part : parts) job.publish_text(job.paths_.part(part.name), part.bytes);
   job.publish_text(job.paths_.scene(), scene_text);
   storing([&] { fs::create_directory(job.paths_.frames()); });
   return job;

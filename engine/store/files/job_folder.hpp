@@ -13,6 +13,7 @@
 #include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/folder_lock.hpp"
 #include "engine/store/files/job_paths.hpp"
+#include "engine/store/files/scene_parts.hpp"
 
 namespace sluice {
 
@@ -26,11 +27,12 @@ struct Restored {
 /// A job folder held under its lock. All physics of the job is in it; see schemas/checkpoint.md.
 class JobFolder {
  public:
-  /// Makes the folder (its parents too) with the scene's text in it, and locks it. Throws
+  /// Makes the folder (its parents too) with the scene's text and parts in it, and locks it. Throws
   /// StorageError: already_exists when it holds a job; not_ours when it holds anything else;
   /// unwritable, locked, disk_full, io.
   [[nodiscard]] static JobFolder create(const std::filesystem::path& folder,
                                         std::string_view scene_text,
+                                        const std::vector<NamedPart>& parts = {},
                                         FileSystem& system = FileSystem::real());
   /// Locks an existing one and removes what killed processes left. Throws StorageError: not_ours
   /// when there is no scene in it; unwritable, locked, io.

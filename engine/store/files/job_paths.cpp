@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/scene/format/text_rules.hpp"
 #include "engine/store/disk/file_system.hpp"
 #include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/snapshot_io.hpp"
@@ -31,6 +32,11 @@ std::filesystem::path JobPaths::frame(std::uint64_t index) const {
 
 std::filesystem::path JobPaths::checkpoint(std::uint64_t step) const {
   return root_ / checkpoint_name(step);
+}
+
+std::vector<std::filesystem::path> JobPaths::parts() const {
+  return sorted_paths(root_,
+                      [](std::string_view name) { return are_allowed(name, Characters::mesh); });
 }
 
 std::vector<std::filesystem::path> JobPaths::checkpoints() const {

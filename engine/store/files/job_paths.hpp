@@ -23,6 +23,8 @@ class JobPaths {
 
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
   [[nodiscard]] std::filesystem::path scene() const { return root_ / "scene.json"; }
+  /// A file that the scene names. Its ending, .stl or .obj, is that of no other file of a job.
+  [[nodiscard]] std::filesystem::path part(std::string_view name) const { return root_ / name; }
   [[nodiscard]] std::filesystem::path lock() const { return root_ / "lock"; }
   [[nodiscard]] std::filesystem::path log() const { return root_ / "log.jsonl"; }
   [[nodiscard]] std::filesystem::path series() const { return root_ / "series.h5"; }
@@ -35,6 +37,8 @@ class JobPaths {
   [[nodiscard]] std::filesystem::path frame(std::uint64_t index) const;
   [[nodiscard]] std::filesystem::path checkpoint(std::uint64_t step) const;
 
+  /// Files that a scene may name, by name.
+  [[nodiscard]] std::vector<std::filesystem::path> parts() const;
   /// Checkpoint files by name, newest first; none of them has been read. `.bad` ones are left out.
   [[nodiscard]] std::vector<std::filesystem::path> checkpoints() const;
   /// Checkpoints that were put aside as unusable.

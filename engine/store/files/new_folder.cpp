@@ -136,7 +136,7 @@ void publish_folder(const fs::path& target, std::span<const FirstFile> files,
 }
 
 void publish_job_folder(const fs::path& target, std::string_view scene_text,
-                        std::initializer_list<FirstFile> more, FileSystem& system) {
+                        const std::vector<FirstFile>& more, FileSystem& system) {
   const JobPaths paths(target);
   const std::string scene = paths.scene().filename().string();
   const std::string frames = paths.frames().filename().string();

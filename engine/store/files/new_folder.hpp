@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "engine/store/disk/file_system.hpp"
 
@@ -27,7 +27,7 @@ void publish_folder(const std::filesystem::path& target, std::span<const FirstFi
 
 /// The same for the folder of a new job: scene.json, `more`, and an empty folder for frames.
 void publish_job_folder(const std::filesystem::path& target, std::string_view scene_text,
-                        std::initializer_list<FirstFile> more,
+                        const std::vector<FirstFile>& more,
                         FileSystem& system = FileSystem::real());
 
 /// Removes what killed callers of publish_folder left in `parent`, and returns how many. Nobody

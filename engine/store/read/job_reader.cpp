@@ -14,6 +14,7 @@
 #include "engine/store/disk/publish.hpp"
 #include "engine/store/files/checkpoint_io.hpp"
 #include "engine/store/files/job_folder.hpp"
+#include "engine/store/files/scene_parts.hpp"
 #include "engine/store/files/series_file.hpp"
 
 namespace sluice {
@@ -47,7 +48,7 @@ std::string JobReader::scene_text() const {
 }
 
 Scene JobReader::scene() const {
-  ParseResult parsed = parse_job_scene(scene_text());
+  ParseResult parsed = parse_job_scene(scene_text(), parts_in(paths_.root(), Links::refuse));
   if (!parsed.scene) throw SceneError(parsed.problems.front());
   return *std::move(parsed.scene);
 }

@@ -20,7 +20,7 @@ fs::path fixtures() { return testing::source_dir() / "tests/scene/fixtures"; }
 
 TEST(SceneFixtures, ValidOnesAreAcceptedAndMakeParticles) {
   for (const fs::path& path : testing::json_files(fixtures() / "valid")) {
-    const ParseResult result = parse_scene(testing::read_text(path));
+    const ParseResult result = testing::parse_file(path);
     EXPECT_TRUE(result.problems.empty()) << path << "\n" << testing::list(result.problems);
     ASSERT_TRUE(result.scene) << path;
     if (testing::takes_long_to_pack(path)) continue;
@@ -33,7 +33,7 @@ TEST(SceneFixtures, InvalidOnesAreRefusedWhereTheyAreWrongAndNowhereElse) {
   std::size_t count = 0;
   for (const fs::path& folder : {fs::path("invalid"), fs::path("beyond_schema")}) {
     for (const fs::path& path : testing::json_files(fixtures() / folder)) {
-      const ParseResult result = parse_scene(testing::read_text(path));
+      const ParseResult result = testing::parse_file(path);
       EXPECT_FALSE(result.scene) << path;
       const auto wanted = expected.at(folder / path.filename()).get<std::vector<std::string>>();
       EXPECT_THAT(testing::pointers(result), ::testing::UnorderedElementsAreArray(wanted))
@@ -47,7 +47,7 @@ TEST(SceneFixtures, InvalidOnesAreRefusedWhereTheyAreWrongAndNowhereElse) {
 
 TEST(SceneFixtures, ExamplesAreAcceptedAndMakeParticles) {
   for (const fs::path& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
-    const ParseResult result = parse_scene(testing::read_text(path));
+    const ParseResult result = testing::parse_file(path);
     ASSERT_TRUE(result.scene) << path << "\n" << testing::list(result.problems);
     EXPECT_EQ(result.scene->name, path.stem()) << "an example bears the name of its file";
     if (testing::takes_long_to_pack(path)) continue;

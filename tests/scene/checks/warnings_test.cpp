@@ -376,7 +376,7 @@ TEST(Warnings, TheExamplesHaveNoneButOfIntervalsAndACoarseBox) {
   for (const auto& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
     // As coarse as others have computed it, and fine beside it.
     const bool coarse = path.stem() == "spheric2";
-    for (const Problem& each : parse_scene(testing::read_text(path)).warnings) {
+    for (const Problem& each : testing::parse_file(path).warnings) {
       EXPECT_EQ(each.pointer, coarse ? "/obstacles/0" : "/sensors/0/interval")
           << path << ": " << each.message;
     }

@@ -263,7 +263,7 @@ TEST(InitialParticles, AreDisplacedByJitterWithinItsAmplitudeAndByItsSeed) {
   EXPECT_GT(largest, 0.095);
 }
 
-json rectangle(double x, double y, double width, double height) {
+json rectangle_of(double x, double y, double width, double height) {
   return {{"shape", "rectangle"}, {"corner", {x, y}}, {"size", {width, height}}};
 }
 
@@ -283,38 +283,39 @@ double off_hydrostatic(const json& text, const Level& level) {
 
 TEST(InitialPressure, OfStackedRegionsCountsFromTheUppermostLevel) {
   json text = base_scene();
-  text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.2, 2, 0.2), rectangle(0, 0.4, 2, 0.2)};
+  text["fluid"] = {rectangle_of(0, 0, 2, 0.2), rectangle_of(0, 0.2, 2, 0.2),
+                   rectangle_of(0, 0.4, 2, 0.2)};
   EXPECT_LT(off_hydrostatic(text, [](double) { return 0.6; }), 1e-6);
 }
 
 TEST(InitialPressure, OfAColumnBesideABedIsEachsOwn) {
   json text = base_scene();
-  text["fluid"] = {rectangle(0, 0, 1, 0.5), rectangle(1, 0, 1, 0.1)};
+  text["fluid"] = {rectangle_of(0, 0, 1, 0.5), rectangle_of(1, 0, 1, 0.1)};
   const auto level = [](double x) { return x < 1 ? 0.5 : 0.1; };
   EXPECT_LT(off_hydrostatic(text, level), 1e-6);
-  text["fluid"] = {rectangle(0, 0, 2, 0.1), rectangle(0, 0.1, 1, 0.4)};
+  text["fluid"] = {rectangle_of(0, 0, 2, 0.1), rectangle_of(0, 0.1, 1, 0.4)};
   EXPECT_LT(off_hydrostatic(text, level), 1e-6) << "the bed reaches below the column";
 }
 
 TEST(InitialPressure, BelowAnObstacleIsThatOfTheArmsBesideIt) {
   json text = base_scene();
-  text["fluid"] = {rectangle(0, 0, 0.7, 0.2), rectangle(0.7, 0, 0.6, 0.2),
-                   rectangle(1.3, 0, 0.7, 0.2), rectangle(0, 0.2, 0.5, 0.4),
-                   rectangle(1.5, 0.2, 0.5, 0.4)};
-  text["obstacles"] = {rectangle(0.5, 0.2, 1, 0.6)};
+  text["fluid"] = {rectangle_of(0, 0, 0.7, 0.2), rectangle_of(0.7, 0, 0.6, 0.2),
+                   rectangle_of(1.3, 0, 0.7, 0.2), rectangle_of(0, 0.2, 0.5, 0.4),
+                   rectangle_of(1.5, 0.2, 0.5, 0.4)};
+  text["obstacles"] = {rectangle_of(0.5, 0.2, 1, 0.6)};
   EXPECT_LT(off_hydrostatic(text, [](double) { return 0.6; }), 1e-6);
 }
 
 TEST(InitialPressure, IsNotPassedThroughAPlateNorToWhatFallsOntoIt) {
   json text = base_scene();
   text["material"]["sound_speed"] = 40;
-  text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.35, 2, 0.2)};
-  text["obstacles"] = {rectangle(0, 0.2, 2, 0.15)};
+  text["fluid"] = {rectangle_of(0, 0, 2, 0.2), rectangle_of(0, 0.35, 2, 0.2)};
+  text["obstacles"] = {rectangle_of(0, 0.2, 2, 0.15)};
   const Particles apart = create_particles(parsed(text)).state.particles;
-  text["fluid"] = {rectangle(0, 0, 2, 0.2)};
+  text["fluid"] = {rectangle_of(0, 0, 2, 0.2)};
   const Particles alone = create_particles(parsed(text)).state.particles;
   text.erase("obstacles");
-  text["fluid"] = {rectangle(0, 0, 2, 0.2), rectangle(0, 0.2, 2, 0.2)};
+  text["fluid"] = {rectangle_of(0, 0, 2, 0.2), rectangle_of(0, 0.2, 2, 0.2)};
   text["fluid"][1]["velocity"] = {0, -1};
   const Particles falling = create_particles(parsed(text)).state.particles;
   for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -325,7 +326,7 @@ TEST(InitialPressure, IsNotPassedThroughAPlateNorToWhatFallsOntoIt) {
 
 TEST(StartPlan, KeepsEveryExampleOnItsLatticeAndCountsItsParticles) {
   for (const auto& path : testing::json_files(testing::source_dir() / "schemas/examples")) {
-    const Scene scene = parsed(json::parse(testing::read_text(path)));
+    const Scene scene = testing::parsed_file(path);
     const StartPlan plan = start_plan(scene);
     if (testing::takes_long_to_pack(path)) {
       EXPECT_TRUE(plan.packed) << path;
@@ -342,17 +343,17 @@ TEST(StartPlan, KeepsEveryExampleOnItsLatticeAndCountsItsParticles) {
 TEST(StartPlan, PacksWhatTheLatticeDoesNotFitToItsArea) {
   json off_wall = base_scene();
   off_wall["tank"]["width"] = 1.02;
-  off_wall["fluid"] = {rectangle(0, 0, 1.02, 0.5)};
+  off_wall["fluid"] = {rectangle_of(0, 0, 1.02, 0.5)};
   json off_level = base_scene();
-  off_level["fluid"] = {rectangle(0, 0, 2, 0.52)};
+  off_level["fluid"] = {rectangle_of(0, 0, 2, 0.52)};
   json round = base_scene();
-  round["fluid"] = {rectangle(0, 0, 2, 0.5)};
+  round["fluid"] = {rectangle_of(0, 0, 2, 0.5)};
   round["obstacles"] = {{{"shape", "circle"}, {"center", {1, 0.2}}, {"radius", 0.1}}};
   json gate = base_scene();
   gate["gate"] = {{"x", 1.02}, {"height", 0.6}, {"speed", 3.46}};
-  gate["fluid"] = {rectangle(0, 0, 1.02, 0.5)};
+  gate["fluid"] = {rectangle_of(0, 0, 1.02, 0.5)};
   json slope = base_scene();
-  slope["fluid"] = {rectangle(0, 0, 2, 0.5)};
+  slope["fluid"] = {rectangle_of(0, 0, 2, 0.5)};
   slope["obstacles"] = {{{"shape", "polygon"}, {"points", {{1, 0}, {2, 0}, {2, 0.6}}}}};
   const double areas[] = {0.51, 1.04, 1 - 0.01 * std::numbers::pi, 0.51, 1 - 0.175 / 0.6};
   int i = 0;
@@ -376,8 +377,8 @@ TEST(StartPlan, AsksWhetherTheParticlesInABedGoOnWithTheLattice) {
   // Fluid half a spacing above a bed between the walls, three spacings of 0.05 m high or 2.75.
   const auto bed = [](double height, const std::string& shape) {
     json text = base_scene();
-    text["fluid"] = {rectangle(0, height, 2, 0.5)};
-    text["obstacles"] = {rectangle(0, 0, 2, height)};
+    text["fluid"] = {rectangle_of(0, height, 2, 0.5)};
+    text["obstacles"] = {rectangle_of(0, 0, 2, height)};
     if (shape == "polygon") {
       const json points = {{0, 0}, {2, 0}, {2, height}, {0, height}};
       text["obstacles"] = {{{"shape", "polygon"}, {"points", points}}};

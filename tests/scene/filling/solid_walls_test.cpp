@@ -19,7 +19,7 @@ constexpr WallLayers kLayers{0.25, 3};
 
 /// 4 cells along x, 5 upwards and, in space, 6 along z.
 template <int Dim>
-TankRoomN<Dim> room(bool open_top) {
+TankRoomN<Dim> walled_room(bool open_top) {
   TankRoomN<Dim> result{VecN<Dim>::Zero(), open_top};
   for (int axis = 0; axis < Dim; ++axis) result.size[axis] = kLayers.spacing * (4 + axis);
   return result;
@@ -28,7 +28,7 @@ TankRoomN<Dim> room(bool open_top) {
 TYPED_TEST(SolidWalls, SurroundATankInWholeLayers) {
   constexpr int kD = TypeParam::value;
   for (const bool open_top : {true, false}) {
-    const TankRoomN<kD> tank = room<kD>(open_top);
+    const TankRoomN<kD> tank = walled_room<kD>(open_top);
     const std::vector<VecN<kD>> walls = walls_around(tank, kLayers);
     // The box of all cells less the inside: 3 layers on each side, none above an open top.
     const std::size_t up = open_top ? 8 : 11;

@@ -187,7 +187,8 @@ TEST(Estimate, CountsExactlyWhatWasMade) {
   EXPECT_EQ(exact_estimate(scene).wall_particles, made.walls.size());
 }
 
-TEST(Estimate, TakesTheTimeOfParticlesTimesStepsAndMoreInDoublePrecision) {
+// Which precision is quicker is measured when first asked for: a matter of the machine.
+TEST(Estimate, TakesTheTimeOfParticlesTimesSteps) {
   json text = base_scene();
   const Scene once = parsed(text);
   text["end_time"] = 2;
@@ -195,10 +196,6 @@ TEST(Estimate, TakesTheTimeOfParticlesTimesStepsAndMoreInDoublePrecision) {
   EXPECT_NEAR(
       expected_core_seconds(twice, estimate(twice)) / expected_core_seconds(once, estimate(once)),
       2.0, 0.01);
-  text["numerics"]["precision"] = "double";
-  const Scene precise = parsed(text);
-  EXPECT_GT(expected_core_seconds(precise, estimate(precise)),
-            expected_core_seconds(twice, estimate(twice)));
 }
 
 TEST(Estimate, AsksForTheDiskThatAFrameTakes) {

@@ -47,7 +47,7 @@ bool holds(const json& whole, const json& part) {
 TEST(CanonicalText, KeepsEveryKeyThatASceneGives) {
   for (const auto& path : all_valid()) {
     json written = json::parse(testing::read_text(path));
-    const json canonical = json::parse(canonical_text(parsed(written)));
+    const json canonical = json::parse(canonical_text(testing::parsed_file(path)));
     if (written.contains("numerics")) written["numerics"].erase("scheme");  // each key is there
     Problems none;
     use_present_words(written, kFormerSceneWords, none);
@@ -57,8 +57,8 @@ TEST(CanonicalText, KeepsEveryKeyThatASceneGives) {
 
 TEST(CanonicalText, ReadsBackToItself) {
   for (const auto& path : all_valid()) {
-    const std::string once = canonical_text(parsed(json::parse(testing::read_text(path))));
-    const ParseResult again = parse_scene(once);
+    const std::string once = canonical_text(testing::parsed_file(path));
+    const ParseResult again = parse_scene(once, testing::parts_beside(path));
     ASSERT_TRUE(again.scene) << path << "\n" << testing::list(again.problems);
     EXPECT_EQ(canonical_text(*again.scene), once) << path;
   }

@@ -203,8 +203,20 @@ TEST(ApiSubmit, TakesWhatCurlSendsAndRefusesOtherForms) {
   EXPECT_EQ(sent_as("application/json; charset=utf-8").status, 200);
   EXPECT_EQ(sent_as("Application/JSON;charset=UTF-8").status, 200);
   EXPECT_EQ(sent_as("application/x-www-form-urlencoded").status, 200);
-  expect_problem(sent_as("multipart/form-data; boundary=x"), 415, "unsupported-media-type");
+  expect_problem(sent_as("multipart/form-data; boundary=x"), 400, "bad-request");
+  expect_problem(sent_as("multipart/mixed; boundary=x"), 415, "unsupported-media-type");
   expect_problem(sent_as("application/jsonp"), 415, "unsupported-media-type");
+}
+
+TEST(ApiSubmit, TakesAFormWithTheSceneAlone) {
+  Service service;
+  const std::string body = "--x\r\nContent-Disposition: form-data; name=\"scene\"\r\n\r\n" +
+                           tiny_scene(0.1) + "\r\n--x--\r\n";
+  const Response response =
+      service.ask("POST", "/v1/jobs", body, {{"content-type", "multipart/form-data; boundary=x"}});
+  ASSERT_EQ(response.status, 202) << response.body;
+  const std::string id = body_of(response)["id"];
+  EXPECT_EQ(read_file(service.data.job(id) / "scene.json"), tiny_scene(0.1));
 }
 
 TEST(ApiSubmit, GivesTheSameJobForTheSameKey) {

@@ -112,6 +112,23 @@ TEST(HttpHead, RefusesCodedBodiesLongBodiesAndLongTargets) {
             ProblemType::uri_too_long);
 }
 
+TEST(HttpHead, TakesALongBodyOnlyForAFormWhereOneIsExpected) {
+  const auto with = [](const std::string& line, const std::string& type, std::size_t bytes) {
+    return line + " HTTP/1.1\r\nHost: h\r\nContent-Type: " + type +
+           "\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n";
+  };
+  const std::string form = "multipart/form-data; boundary=x";
+  const HttpLimits limits;
+  EXPECT_EQ(head_of(with("POST /v1/jobs?label=a", form, limits.upload_bytes)).body_bytes,
+            limits.upload_bytes);
+  for (const std::string& head :
+       {with("POST /v1/jobs", form, limits.upload_bytes + 1),
+        with("POST /v1/jobs", "application/json", 300'000), with("POST /v1/studies", form, 300'000),
+        with("PUT /v1/jobs", form, 300'000)}) {
+    EXPECT_EQ(refusal_of(head), ProblemType::body_too_large) << head;
+  }
+}
+
 TEST(HttpHead, CountsHeaderLinesAndParameters) {
   std::string lines;
   for (int n = 0; n < 99; ++n) lines += "X: 1\r\n";
