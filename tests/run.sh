@@ -116,6 +116,7 @@ step_asan() {
     # of space, which take long to pack; the growth of waves on lattices, which is plain arithmetic.
     local left_out='Damage\.OfAnyBit|KickDriftKickDouble|LeapFrogMixed|kick_drift_kick_double|leap_frog_mixed|LatticeGrowth'
     left_out+='|CalmStart|StillWater|HoldsStillWater|EnergyGuard|Leaks\.Through|SpaceFilling\.(Keeps|FillsAPrism|Packs)'
+    left_out+='|WaterBesideABed|KeepsEveryExampleOnItsLattice'
     check asan -R "^($(IFS='|' && echo "${parts[*]}"))\.[A-Z]" -E "$left_out" -LE long
   else
     fail "asan: build"
