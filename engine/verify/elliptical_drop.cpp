@@ -38,10 +38,10 @@ double drop_stretch(double a_t) {
 }
 
 DropRun run_drop(CaseRunner& bench, int per_radius) {
-  Json drop = circle(Vec2::Zero(), 1.0);
+  Json drop = ball(Vec2::Zero(), 1.0);
   drop["strain_rate"] = -1.0;
-  DropRun result{bench.run(in_space(fmt::format("elliptical-drop-{}", per_radius), std::move(drop),
-                                    1.0 / per_radius, kSound, kEnd)),
+  DropRun result{bench.run(without_tank(fmt::format("elliptical-drop-{}", per_radius),
+                                        std::move(drop), 1.0 / per_radius, kSound, kEnd)),
                  {}};
   if (!result.run.completed() || !result.run.last) return result;
   const SolverState& end = result.run.last->solver;

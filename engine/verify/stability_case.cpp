@@ -12,23 +12,24 @@ namespace {
 
 constexpr std::size_t kMostDots = 1500;
 
+/// As seen along z.
 std::vector<Dot> picture_of(const Checkpoint& state) {
   const Particles& p = state.solver.particles;
   if (p.size() == 0) return {};
-  Vec2 low = p.position_of(0);
+  Vec2 low = p.position_of(0).head<2>();
   Vec2 high = low;
   double fastest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    low = low.cwiseMin(p.position_of(i));
-    high = high.cwiseMax(p.position_of(i));
-    fastest = std::max(fastest, std::hypot(p.velocity[0][i], p.velocity[1][i]));
+    low = low.cwiseMin(p.position_of(i).head<2>());
+    high = high.cwiseMax(p.position_of(i).head<2>());
+    fastest = std::max(fastest, p.velocity_of(i).norm());
   }
   const double size = std::max((high - low).maxCoeff(), 1e-300);
   const std::size_t stride = (p.size() + kMostDots - 1) / kMostDots;
   std::vector<Dot> dots;
   for (std::size_t i = 0; i < p.size(); i += stride) {
-    const Vec2 at = (p.position_of(i) - low) / size;
-    const double speed = std::hypot(p.velocity[0][i], p.velocity[1][i]);
+    const Vec2 at = (p.position_of(i).head<2>() - low) / size;
+    const double speed = p.velocity_of(i).norm();
     dots.push_back({at.x(), at.y(), fastest > 0.0 ? speed / fastest : 0.0});
   }
   return dots;
@@ -59,7 +60,8 @@ bool CaseResult::met() const {
 
 std::vector<StabilityCase> all_cases() {
   std::vector<StabilityCase> all;
-  for (const auto cases : {table_cases(), drop_cases(), flow_cases(), extreme_cases()}) {
+  for (const auto cases :
+       {table_cases(), limit_cases(), drop_cases(), flow_cases(), extreme_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -55,13 +55,14 @@ struct StabilityCase {
   std::string_view paper_miss{};  ///< why the paper's scheme misses the gate, where it does
 };
 
-/// Why films rise with the paper's scheme.
+/// Why still water and films rise with the paper's scheme.
 inline constexpr std::string_view kLifted =
-    "eqs. 7 and 10 diffuse and spread the hydrostatic density too, which lifts a film at rest; "
+    "eqs. 7 and 10 diffuse and spread the hydrostatic density too, which lifts water at rest; "
     "fourtakas without eq. 10 holds it";
 
 // The cases, by file.
 [[nodiscard]] std::span<const StabilityCase> table_cases();    ///< scheme against theory
+[[nodiscard]] std::span<const StabilityCase> limit_cases();    ///< of the Courant number
 [[nodiscard]] std::span<const StabilityCase> drop_cases();     ///< drops in empty space
 [[nodiscard]] std::span<const StabilityCase> flow_cases();     ///< waves, impacts, small fluids
 [[nodiscard]] std::span<const StabilityCase> extreme_cases();  ///< far ends of every parameter

@@ -36,10 +36,10 @@ double closest_pair(const Particles& p) {
 
 CaseResult rotating_patch(CaseRunner& bench) {
   const double dx = 1.0 / bench.pick(20, 50);
-  Json patch = rectangle(Vec2(-0.5, -0.5), Vec2(1, 1));
+  Json patch = cuboid(Vec2(-0.5, -0.5), Vec2(1, 1));
   patch["rotation_rate"] = -1.0;
   const CaseRun run =
-      bench.run(in_space("rotating-patch", std::move(patch), dx, 7.0, bench.pick(1.0, 2.0)));
+      bench.run(without_tank("rotating-patch", std::move(patch), dx, 7.0, bench.pick(1.0, 2.0)));
   CaseResult result = result_of(run, Verdict::stable, Verdict::stable_with_warnings);
   if (!run.completed()) return result;
   const double at_start = angular_momentum(create_particles(run.scene).state.particles);
@@ -75,8 +75,9 @@ double dominant_frequency(const Series& series, double near) {
 }
 
 /// First sloshing mode of a tank of width L = 2 H: k = pi/L, omega^2 = g k tanh(k H). The kinetic
-/// energy goes twice as fast.
-CaseResult standing_wave(CaseRunner& bench) {
+/// energy goes twice as fast. In space `breadth`, in H, is above zero.
+CaseResult standing_wave_in(CaseRunner& bench, std::string_view name, double breadth,
+                            int per_depth) {
   constexpr double kAmplitude = 0.05;
   const double k = 0.5 * std::numbers::pi;
   const double omega = std::sqrt(kGravity * k * std::tanh(k));
@@ -85,10 +86,16 @@ CaseResult standing_wave(CaseRunner& bench) {
     const double x = 0.02 * i;
     points.push_back({x, 1.0 + kAmplitude * std::cos(k * x)});
   }
-  Json scene = tank_scene("standing-wave", Vec2(2.0, 1.5), Json::array({Json::object()}),
-                          1.0 / bench.pick(20, 40), 10 * std::sqrt(2 * kGravity),
-                          4 * 2 * std::numbers::pi / omega);
-  scene["fluid"][0] = {{"shape", "polygon"}, {"points", points}};
+  Json water{{"shape", "polygon"}, {"points", points}};
+  Vec tank = Vec2(2.0, 1.5);
+  if (breadth > 0.0) {
+    water["shape"] = "prism";
+    water["z"] = 0.0;
+    water["depth"] = breadth;
+    tank = Vec3(2.0, 1.5, breadth);
+  }
+  const Json scene = tank_scene(name, tank, Json::array({water}), 1.0 / per_depth,
+                                10 * std::sqrt(2 * kGravity), 4 * 2 * std::numbers::pi / omega);
   const CaseRun run = bench.run(scene);
   CaseResult result = result_of(run, Verdict::stable, Verdict::stable_with_warnings);
   if (!run.completed()) return result;
@@ -96,13 +103,19 @@ CaseResult standing_wave(CaseRunner& bench) {
   result.figures.push_back({"period", std::abs(omega / found - 1.0), 0.02});
   return result;
 }
+CaseResult standing_wave(CaseRunner& b) {
+  return standing_wave_in(b, "standing-wave", 0.0, b.pick(20, 40));
+}
+CaseResult standing_wave_in_space(CaseRunner& b) {
+  return standing_wave_in(b, "standing-wave-3d", 0.25, b.pick(16, 24));
+}
 
 /// Falls until most of the drop has met the floor. Its jets are five times as fast as the drop: the
 /// tank is so wide that they meet no wall.
 CaseResult droplet_at(CaseRunner& bench, double mach, Verdict expected) {
   constexpr double kDropSound = 20.0;
   const double dx = 0.1 / bench.pick(15, 40);
-  Json drop = circle(Vec2(1.5, 0.12), 0.1);
+  Json drop = ball(Vec2(1.5, 0.12), 0.1);
   drop["velocity"] = {0.0, -mach * kDropSound};
   return result_of(
       bench.run(tank_scene(fmt::format("droplet-mach-{:g}", mach), Vec2(3.0, 0.5),
@@ -123,20 +136,40 @@ CaseResult one_particle_film(CaseRunner& bench) {
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
 }
 
-CaseResult half_perturbation(CaseRunner& bench) {
-  Json scene = still_water("perturbation-half", {});
+/// Still water of a few hundred particles, in the plane or in space.
+Json small_tank(std::string_view name, bool in_space) {
+  StillWater water;
+  if (in_space) {
+    water.breadth = 1.0;
+    water.per_depth = 8.0;
+  }
+  return still_water(name, water);
+}
+
+CaseResult half_perturbation_in(CaseRunner& bench, Json scene) {
   scene["perturbation"] = {{"amplitude", 0.5}};
   return result_of(bench.run(scene), Verdict::stable, Verdict::stable_with_warnings);
 }
 
+CaseResult half_perturbation(CaseRunner& b) {
+  return half_perturbation_in(b, small_tank("perturbation-half", false));
+}
+CaseResult half_perturbation_in_space(CaseRunner& b) {
+  return half_perturbation_in(b, small_tank("perturbation-half-3d", true));
+}
+
 /// A pair at one place has no direction to part in: the others must move them, without a NaN.
-CaseResult coincident_particles(CaseRunner& bench) {
-  const CaseRun run =
-      bench.run(still_water("coincident", {}), StabilityCheck::refuse, [](Particles& p) {
-        p.position[0][210] = p.position[0][211];
-        p.position[1][210] = p.position[1][211];
-      });
+CaseResult coincident_in(CaseRunner& bench, const Json& scene) {
+  const CaseRun run = bench.run(scene, StabilityCheck::refuse, [](Particles& p) {
+    for (auto& along : p.position) along[210] = along[211];
+  });
   return result_of(run, Verdict::stable, Verdict::stable_with_warnings);
+}
+CaseResult coincident_particles(CaseRunner& b) {
+  return coincident_in(b, small_tank("coincident", false));
+}
+CaseResult coincident_in_space(CaseRunner& b) {
+  return coincident_in(b, small_tank("coincident-3d", true));
 }
 
 CaseResult overlapping_regions(CaseRunner& bench) {
@@ -146,7 +179,7 @@ CaseResult overlapping_regions(CaseRunner& bench) {
 }
 
 CaseResult free_fall(CaseRunner& bench) {
-  Json scene = in_space("free-fall", rectangle(Vec2::Zero(), Vec2(0.01, 0.01)), 0.01, 50.0, 1.0);
+  Json scene = without_tank("free-fall", cuboid(Vec2::Zero(), Vec2(0.01, 0.01)), 0.01, 50.0, 1.0);
   scene["gravity"] = {0.0, -kGravity};
   scene["fluid"][0]["velocity"] = {1.0, 2.0};
   const CaseRun run = bench.run(scene);
@@ -195,6 +228,8 @@ constexpr std::array kFlowCases{
                   rotating_patch},
     StabilityCase{"standing-wave", "first sloshing mode, a = H/20", "period within 2 %",
                   standing_wave},
+    StabilityCase{"standing-wave-3d", "the same in space", "period within 2 %",
+                  standing_wave_in_space, kLifted},
     StabilityCase{"droplet-mach-0.1", "drop on a floor at 0.1 c", "warned", droplet_01},
     StabilityCase{"droplet-mach-0.5", "drop on a floor at 0.5 c", "failed", droplet_05},
     StabilityCase{"droplet-mach-1", "drop on a floor at c", "failed", droplet_1},
@@ -202,7 +237,10 @@ constexpr std::array kFlowCases{
                   one_particle_film, kLifted},
     StabilityCase{"perturbation-half", "particles displaced by up to half their distance", "stable",
                   half_perturbation},
+    StabilityCase{"perturbation-half-3d", "the same in space", "stable",
+                  half_perturbation_in_space},
     StabilityCase{"coincident", "two particles at one place", "stable", coincident_particles},
+    StabilityCase{"coincident-3d", "the same in space", "stable", coincident_in_space},
     StabilityCase{"overlap", "two regions at one place", "rejected", overlapping_regions},
     StabilityCase{"free-fall", "one particle in free fall", "place to 1e-12", free_fall},
     StabilityCase{"absurd-values", "ends of double, 1e12 particles, negative sizes", "all rejected",

@@ -17,7 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSide = 20;        // particles
+// Particles along a side, by dimensions.
+int side_of(int dimensions) { return dimensions == 3 ? 10 : 20; }
+
 constexpr double kNoise = 1e-9;  // of c
 constexpr double kBeyondDoubt = 100;
 constexpr int kFewestSteps = 2000;
@@ -43,18 +45,24 @@ Method method_of(Integrator integrator, double alpha, double delta) {
 }
 
 SolverState noisy_patch(const Method& m, double displacement) {
+  const int dimensions = m.dimensions();
+  const int side = side_of(dimensions);
   SolverState state;
+  state.particles = no_particles(dimensions);
   Particles& p = state.particles;
   std::mt19937_64 random(1);
   const auto either_way = [&] { return static_cast<double>(random() >> 11U) * 0x1p-52 - 1.0; };
   const auto noise = [&] { return kNoise * m.sound_speed * either_way(); };
   const auto off = [&] { return displacement > 0.0 ? displacement * either_way() : 0.0; };
-  for (int i = 0; i < kSide * kSide; ++i) {
+  const int count = side * side * (dimensions == 3 ? side : 1);
+  for (int i = 0; i < count; ++i) {
     p.id.push_back(i);
-    p.position[0].push_back(m.spacing * (i % kSide + off()));
-    p.position[1].push_back(m.spacing * (i / kSide + off()));
-    p.velocity[0].push_back(noise());
-    p.velocity[1].push_back(noise());
+    int rest = i;
+    for (auto& along : p.position) {
+      along.push_back(m.spacing * (rest % side + off()));
+      rest /= side;
+    }
+    for (auto& along : p.velocity) along.push_back(noise());
     p.density_excess.push_back(0.0);
   }
   return state;
@@ -129,9 +137,11 @@ std::string row_svg(const StabilityRow& row, double y) {
 
 NoiseGrowth measure_noise(const Method& method, int most_steps, double displacement) {
   Method m = method;
-  const double far = 10.0 * kSide * m.spacing;
+  const int dimensions = m.dimensions();
   FlowDomain domain;
-  domain.box = {Vec2::Constant(-far), Vec2::Constant(far)};
+  domain.box = {filled_vec<kAnyDim>(0.0, dimensions), filled_vec<kAnyDim>(0.0, dimensions)};
+  domain.box = grown(domain.box, 10.0 * side_of(dimensions) * m.spacing);
+  domain.rim = domain.room = Box::everywhere(dimensions);
   m.gravity.setZero();
   Solver solver(m, domain, noisy_patch(m, displacement), {}, {});
   const double start = solver.extremes().max_speed;

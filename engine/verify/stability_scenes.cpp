@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "engine/scene/format/numerics_json.hpp"
 #include "engine/scene/model/scheme.hpp"
@@ -14,7 +15,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kProbeDepths{0.25, 0.5, 0.75};
 
-Json pair(const Vec2& vec) { return Json::array({vec.x(), vec.y()}); }
+Json numbers(const Vec& vec) { return std::vector<double>(vec.begin(), vec.end()); }
+
+/// The first components of a vector of the plane or of space.
+Vec of_dimensions(int dimensions, const Vec3& vec) { return vec.head(dimensions); }
 
 std::string probe_name(std::size_t index) { return "p" + std::to_string(index); }
 
@@ -51,27 +55,37 @@ Json with_scheme(Json scene, const Json& scheme) {
   return scene;
 }
 
-Json rectangle(Vec2 corner, Vec2 size) {
-  return {{"shape", "rectangle"}, {"corner", pair(corner)}, {"size", pair(size)}};
+Json cuboid(const Vec& corner, const Vec& size) {
+  return {{"shape", dimensions_of(size) == 3 ? "box" : "rectangle"},
+          {"corner", numbers(corner)},
+          {"size", numbers(size)}};
 }
 
-Json circle(Vec2 center, double radius) {
-  return {{"shape", "circle"}, {"center", pair(center)}, {"radius", radius}, {"pressure", "zero"}};
+Json ball(const Vec& center, double radius) {
+  return {{"shape", dimensions_of(center) == 3 ? "sphere" : "circle"},
+          {"center", numbers(center)},
+          {"radius", radius},
+          {"pressure", "zero"}};
 }
 
-Json tank_scene(std::string_view name, Vec2 size, Json fluid, double spacing, double sound,
+Json tank_scene(std::string_view name, const Vec& size, Json fluid, double spacing, double sound,
                 double end_time) {
+  const int dimensions = dimensions_of(size);
+  Json tank{{"width", size[0]}, {"height", size[1]}};
+  if (dimensions == 3) tank["depth"] = size[2];
   return {{"name", name},
-          {"tank", {{"width", size.x()}, {"height", size.y()}}},
+          {"dimensions", dimensions},
+          {"tank", tank},
           {"fluid", std::move(fluid)},
-          {"gravity", {0.0, -kGravity}},
+          {"gravity", numbers(of_dimensions(dimensions, {0.0, -kGravity, 0.0}))},
           {"material", {{"sound_speed", sound}}},
           {"resolution", {{"spacing", spacing}}},
           {"sensors", {{{"name", "energy"}, {"kind", "energy"}, {"interval", end_time / 200}}}},
           {"end_time", end_time}};
 }
 
-Json in_space(std::string_view name, Json shape, double spacing, double sound, double end_time) {
+Json without_tank(std::string_view name, Json shape, double spacing, double sound,
+                  double end_time) {
   shape["pressure"] = "zero";
   return {{"name", name},
           {"fluid", Json::array({std::move(shape)})},
@@ -84,23 +98,28 @@ Json in_space(std::string_view name, Json shape, double spacing, double sound, d
 Json still_water(std::string_view name, const StillWater& w) {
   const double wave = std::sqrt(w.gravity * w.depth);
   const double end = w.time * w.depth / wave;
-  const Vec2 size = w.depth * Vec2(w.width, 1.0);
-  Json scene = tank_scene(name, size.cwiseProduct(Vec2(1.0, 1.3)),
-                          Json::array({rectangle(Vec2::Zero(), size)}), w.depth / w.per_depth,
-                          w.sound_ratio * wave, end);
-  scene["gravity"] = {0.0, -w.gravity};
+  const int dimensions = w.breadth > 0.0 ? 3 : 2;
+  const auto sized = [&](double height) {
+    return of_dimensions(dimensions, w.depth * Vec3(w.width, height, w.breadth));
+  };
+  Json scene = tank_scene(name, sized(1.3),
+                          Json::array({cuboid(filled_vec<kAnyDim>(0.0, dimensions), sized(1.0))}),
+                          w.depth / w.per_depth, w.sound_ratio * wave, end);
+  scene["gravity"][1] = -w.gravity;
   scene["material"]["density"] = w.density;
   for (std::size_t i = 0; i < kProbeDepths.size(); ++i) {
-    const Vec2 place(0.5 * size.x(), w.depth * (1.0 - kProbeDepths[i]));
+    const Vec3 place = w.depth * Vec3(0.5 * w.width, 1.0 - kProbeDepths[i], 0.5 * w.breadth);
     scene["sensors"].push_back({{"name", probe_name(i)},
                                 {"kind", "pressure"},
-                                {"position", pair(place)},
+                                {"position", numbers(of_dimensions(dimensions, place))},
                                 {"interval", end / 200}});
   }
-  scene["sensors"].push_back({{"name", "surface"},
-                              {"kind", "surface_height"},
-                              {"x", 0.5 * size.x()},
-                              {"interval", end / 200}});
+  Json surface{{"name", "surface"},
+               {"kind", "surface_height"},
+               {"x", 0.5 * w.depth * w.width},
+               {"interval", end / 200}};
+  if (dimensions == 3) surface["z"] = 0.5 * w.depth * w.breadth;
+  scene["sensors"].push_back(std::move(surface));
   return scene;
 }
 
@@ -119,13 +138,15 @@ double pressure_error(const CaseRun& run, const StillWater& w, double from) {
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : HUGE_VAL;
 }
 
-Json dam_break(std::string_view name, double width, double height, double per_length,
+Json dam_break(std::string_view name, const Vec& column, double per_length,
                double end_in_root_h_over_g) {
-  const double spacing = std::min(width, height) / per_length;
-  const double sound = 10 * std::sqrt(2 * kGravity * height);
-  const Vec2 tank(std::max(4 * width, 2 * height), 2 * height);
-  return tank_scene(name, tank, Json::array({rectangle(Vec2::Zero(), Vec2(width, height))}),
-                    spacing, sound, end_in_root_h_over_g * std::sqrt(height / kGravity));
+  const double width = column[0], height = column[1];
+  Vec tank = column;
+  tank.head<2>() << std::max(4 * width, 2 * height), 2 * height;
+  return tank_scene(name, tank,
+                    Json::array({cuboid(filled_vec<kAnyDim>(0.0, dimensions_of(column)), column)}),
+                    std::min(width, height) / per_length, 10 * std::sqrt(2 * kGravity * height),
+                    end_in_root_h_over_g * std::sqrt(height / kGravity));
 }
 
 }  // namespace sluice

@@ -29,6 +29,7 @@ inline constexpr double kGravity = 9.81;
 struct StillWater {
   double depth = 1.0;         ///< H, m
   double width = 1.0;         ///< of the tank, in H
+  double breadth = 0.0;       ///< of the tank along z, in H; none in the plane
   double per_depth = 20.0;    ///< particles in H
   double gravity = kGravity;  ///< m/s^2
   double density = 1000.0;    ///< kg/m^3
@@ -42,19 +43,23 @@ struct StillWater {
 /// `from` of the end time on.
 [[nodiscard]] double pressure_error(const CaseRun& run, const StillWater& water, double from);
 
-/// A tank with an open top and the given fluid; lengths in m, gravity 9.81, sound speed `sound`.
-[[nodiscard]] nlohmann::ordered_json tank_scene(std::string_view name, Vec2 size,
+/// A tank with an open top and the given fluid, of as many dimensions as its size; lengths in m,
+/// gravity 9.81, sound speed `sound`.
+[[nodiscard]] nlohmann::ordered_json tank_scene(std::string_view name, const Vec& size,
                                                 nlohmann::ordered_json fluid, double spacing,
                                                 double sound, double end_time);
-/// A fluid in empty space that starts without pressure: no tank, no gravity.
-[[nodiscard]] nlohmann::ordered_json in_space(std::string_view name, nlohmann::ordered_json shape,
-                                              double spacing, double sound, double end_time);
-[[nodiscard]] nlohmann::ordered_json rectangle(Vec2 corner, Vec2 size);
-[[nodiscard]] nlohmann::ordered_json circle(Vec2 center, double radius);
+/// A fluid by itself that starts without pressure: no tank, no gravity. Of the plane.
+[[nodiscard]] nlohmann::ordered_json without_tank(std::string_view name,
+                                                  nlohmann::ordered_json shape, double spacing,
+                                                  double sound, double end_time);
+/// A rectangle in the plane, a box in space.
+[[nodiscard]] nlohmann::ordered_json cuboid(const Vec& corner, const Vec& size);
+/// A circle in the plane, a sphere in space; without pressure at the start.
+[[nodiscard]] nlohmann::ordered_json ball(const Vec& center, double radius);
 
-/// A column of w x H that falls into a tank of 4 w, but at least 2 H: sizes in m, `per_length`
-/// particles in the shorter side.
-[[nodiscard]] nlohmann::ordered_json dam_break(std::string_view name, double width, double height,
+/// A column of w x H, in space as broad as its tank, that falls into a tank of 4 w, but at least
+/// 2 H: sizes in m, `per_length` particles in the shorter of w and H.
+[[nodiscard]] nlohmann::ordered_json dam_break(std::string_view name, const Vec& column,
                                                double per_length, double end_in_root_h_over_g);
 
 }  // namespace sluice

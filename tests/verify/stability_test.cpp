@@ -227,7 +227,7 @@ TEST(StabilityScenes, SchemesAreThoseOfTheExamples) {
 
 TEST(StabilityScenes, WithoutATankTheSchemesWallTermsAndItsShiftingAreLeftOut) {
   const nlohmann::json drop = with_scheme(
-      in_space("drop", circle(Vec2::Zero(), 1.0), 0.1, 10.0, 1.0), recommended_scheme());
+      without_tank("drop", ball(Vec2::Zero(), 1.0), 0.1, 10.0, 1.0), recommended_scheme());
   EXPECT_FALSE(drop["numerics"].contains("wall_shear"));
   EXPECT_FALSE(drop["numerics"].contains("particle_shifting"));
   EXPECT_EQ(drop["resolution"], (nlohmann::json{{"spacing", 0.1}, {"smoothing_ratio", 1.5}}));
