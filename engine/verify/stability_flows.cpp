@@ -107,7 +107,7 @@ CaseResult standing_wave(CaseRunner& b) {
   return standing_wave_in(b, "standing-wave", 0.0, b.pick(20, 40));
 }
 CaseResult standing_wave_in_space(CaseRunner& b) {
-  return standing_wave_in(b, "standing-wave-3d", 0.25, b.pick(16, 24));
+  return standing_wave_in(b, "standing-wave-3d", 0.25, b.pick(12, 24));
 }
 
 /// Falls until most of the drop has met the floor. Its jets are five times as fast as the drop: the

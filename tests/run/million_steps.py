@@ -1,12 +1,12 @@
 """Still water for a million steps with kills at random instants: no bit may differ from the run
 that nobody disturbed, and what drifts is told.
 
-usage: million_steps.py SLUICE SCENE [--drifting SCENE] [--steps N] [--kills N] [--seed N]
+usage: million_steps.py SLUICE SCENE [--drifting SCENE] [--in-space] [--steps N] [--kills N] [--seed N]
 
 The scheme of SCENE must hold the water for all steps. That of the drifting one may be ended by a
 guard before, but then at the same step and with the same diagnosis with kills and without.
 Of each scene only the numerics and the smoothing length over the particle distance are taken, for a
-tank of 0.2 m x 0.1 m of water with 200 particles.
+tank of 0.2 m x 0.1 m of water with 200 particles, in space of 0.06 m each way with 216.
 """
 
 import argparse
@@ -23,29 +23,30 @@ import h5py
 
 GRAVITY = 9.81  # m/s^2
 DENSITY = 1000.0  # kg/m^3
-WIDTH, DEPTH = 0.2, 0.1  # m
+PLANE, SPACE = (0.2, 0.1), (0.06, 0.06, 0.06)  # m, of the water
 SPACING = 0.01  # m
 STOPPED, FAILED = 85, 4
 CHECKPOINTS = 200
 SAMPLES = 2000
 
 
-def still_water(example, steps):
+def still_water(example, steps, size):
     """A tank at rest with the scheme of an example, too long to end by itself."""
-    sound = 10 * math.sqrt(2 * GRAVITY * DEPTH)
+    width, height, *depth = size
+    sound = 10 * math.sqrt(2 * GRAVITY * height)
     numerics = example["numerics"]
     ratio, courant = {"recommended": (1.5, 1.0), "paper": (1.0, 0.25)}[numerics["scheme"]]
     time = steps * courant * ratio * SPACING / sound  # s, with steps as long as at rest
     return {
         "name": "still",
-        "tank": {"width": WIDTH, "height": 1.5 * DEPTH},
-        "fluid": [{"shape": "rectangle", "corner": [0, 0], "size": [WIDTH, DEPTH]}],
-        "gravity": [0, -GRAVITY],
+        "tank": {"width": width, "height": 1.5 * height, **({"depth": depth[0]} if depth else {})},
+        "fluid": [{"shape": "box" if depth else "rectangle", "corner": [0] * len(size), "size": list(size)}],
+        "gravity": [0, -GRAVITY] + [0] * len(depth),
         "material": {"density": DENSITY, "sound_speed": sound},
         "resolution": {"spacing": SPACING, "smoothing_ratio": ratio},
         "numerics": numerics,
         "sensors": [
-            {"name": "floor", "kind": "pressure", "position": [0.5 * WIDTH, 0],
+            {"name": "floor", "kind": "pressure", "position": [0.5 * width, 0] + [0.5 * each for each in depth],
              "interval": time / SAMPLES},
             {"name": "energy", "kind": "energy", "interval": time / SAMPLES},
         ],
@@ -101,15 +102,15 @@ def disturbed(sluice, scene, folder, steps, delays):
     return outcome_of(folder), kills, resumed
 
 
-def drift(folder):
-    """Of the last twentieth of the run: floor pressure over rho g H, and energy over rho g H^2 W."""
+def drift(folder, size):
+    """Of the last twentieth of the run: floor pressure over rho g H, and energy over that times the volume."""
     checkpoint = max(folder.glob("checkpoint-*.h5"))
     with h5py.File(checkpoint) as file:
         last = max(1, int(file["series/0000"].attrs["count"]) // 20)
-        floor = file["series/0000/values"][-last:, 0, 0].mean() / (DENSITY * GRAVITY * DEPTH)
+        floor = file["series/0000/values"][-last:, 0, 0].mean() / (DENSITY * GRAVITY * size[1])
         energy = file["series/0001/values"][:, 0, :]
         columns = list(file["series/0001"].attrs["columns"])
-        scale = DENSITY * GRAVITY * DEPTH**2 * WIDTH
+        scale = DENSITY * GRAVITY * size[1] * math.prod(size)
         kinetic = energy[-last:, columns.index("kinetic")].mean() / scale
         total = sum(energy[:, columns.index(name)] for name in ("kinetic", "potential", "internal"))
         change = (total[-last:].mean() - total[0]) / scale
@@ -122,10 +123,12 @@ def main():
     parser.add_argument("sluice")
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("--drifting", type=pathlib.Path)
+    parser.add_argument("--in-space", action="store_true")
     parser.add_argument("--steps", type=int, default=1_000_000)
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
+    size = SPACE if arguments.in_space else PLANE
     dice = random.Random(arguments.seed)
     failed = False
     for example in filter(None, [arguments.scene, arguments.drifting]):
@@ -133,7 +136,7 @@ def main():
             root = pathlib.Path(name)
             scene = root / "scene.json"
             scene.write_text(json.dumps(still_water(json.loads(example.read_text()),
-                                                    arguments.steps)))
+                                                    arguments.steps, size)))
             calm, seconds = undisturbed(arguments.sluice, scene, root / "calm", arguments.steps)
             longest = 1.6 * seconds / (arguments.kills + 1)
             delays = [dice.uniform(0, longest) for _ in range(arguments.kills)]
@@ -143,7 +146,7 @@ def main():
             held = calm["step"] == arguments.steps and not any(calm["removed"].values())
             failed |= not same or kills < arguments.kills / 2
             failed |= example == arguments.scene and not held
-            figures = ", ".join(f"{key} {value:.4g}" for key, value in drift(root / "storm").items())
+            figures = ", ".join(f"{key} {value:.4g}" for key, value in drift(root / "storm", size).items())
             print(f"{example.name}: {calm['step']} steps, {kills} kills, gone on "
                   f"{len(resumed)} times from steps up to {max(resumed, default=0)}: "
                   f"{'same end and digests' if same else 'THE ENDS DIFFER'}; {figures}", flush=True)
