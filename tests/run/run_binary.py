@@ -94,6 +94,16 @@ class Sandbox(unittest.TestCase):
                 return fields
         self.fail(f"the run ended without the event {event}")
 
+    def wait_for_new_checkpoint(self, folder, seconds):
+        """Until there is one, or for so long."""
+        def names():
+            return {path.name for path in (self.folder / folder).glob("checkpoint-*.h5")}
+
+        before = names()
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and not names() - before:
+            time.sleep(0.002)
+
     def outcome(self, folder):
         return json.loads((self.folder / folder / "outcome.json").read_text())
 
@@ -149,11 +159,12 @@ class Restart(Sandbox):
         while kills < most:
             process = self.start("run", path, "--folder", "job", "--checkpoint-every", 20,
                                  "--threads", self.random.choice([1, 1, 2, 3, 8]))
-            # Every second kill meets a run under way, however slow the machine is at present.
+            # One kill at any instant of the start, one once the run is under way: however slow the machine is
+            # at present, none comes later than a little after a checkpoint.
             if kills % 2:
                 self.wait_for(process, "checkpoint")
             else:
-                time.sleep(self.random.uniform(0.0, 1.5 * startup))
+                self.wait_for_new_checkpoint("job", self.random.uniform(0.0, 1.5 * startup))
             time.sleep(self.random.uniform(0.0, 0.08))
             process.kill()
             process.wait()
